@@ -1,0 +1,1 @@
+//! The wire: generated messages, key expressions, attachment, and conversion to and from the domain.

@@ -1,0 +1,1 @@
+//! Offline: register, learn, explain, compare and report over files and recordings.

@@ -1,0 +1,1 @@
+//! A picture source, published to Zenoh.

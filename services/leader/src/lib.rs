@@ -1,0 +1,1 @@
+//! The landmark set, published to Zenoh with a manifest, and its web face.

@@ -1,0 +1,1 @@
+//! Crash-safe MCAP recordings: writing, reading, recovery. Synchronous; knows nothing of Zenoh.

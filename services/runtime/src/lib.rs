@@ -1,0 +1,1 @@
+//! What every service needs: configuration layers, telemetry, shutdown, the Zenoh session.

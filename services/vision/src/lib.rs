@@ -1,0 +1,26 @@
+//! Registration, prediction and following of landmarks in frames.
+//!
+//! This crate is pure: frames, numbers and time come in as arguments, results go out as values. It has no clock,
+//! no I/O, no threads of its own, no logging and no serialisation; `clippy.toml` bans them with their reasons.
+//!
+//! The method is the statistical-gradient registration of the reference thesis, section 4.0.3. One frame passes
+//! seven stages, each a function in a file of that name: [`statistics`] → [`mask`] → [`components`] → [`outline`]
+//! → [`hough`] → [`shape`] → [`measure`]; [`register`] runs them, [`follow`] runs [`register`] over time.
+//!
+//! Conventions (ARCHITECTURE.md): frame pixels have their origin at the top-left **corner** of the picture, x to the
+//! right, y down, so the centre of the first pixel is (0.5, 0.5); colours are 8-bit levels in the order R, G, B;
+//! variances are the population's.
+
+pub mod frame;
+pub mod geometry;
+pub mod landmark;
+pub mod outcome;
+pub mod probe;
+pub mod timestamp;
+
+pub use frame::Frame;
+pub use geometry::{PointPx, RectPx, Segment, SizePx};
+pub use landmark::{ColorStats, Digest, Landmark, LandmarkSet, SetVersion, ShapeClass, WindowPx};
+pub use outcome::{Gate, LandmarkOutcome, Miss, Outcome, Prediction, Sighting};
+pub use probe::{NoProbe, Stage, StageProbe};
+pub use timestamp::Timestamp;
