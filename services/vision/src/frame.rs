@@ -1,9 +1,14 @@
 //! A decoded picture.
 
+pub mod decode;
+pub mod encode;
+
+use std::fmt;
+
 use crate::geometry::SizePx;
 
 /// A picture of 8-bit RGB pixels, interleaved, row after row without padding: `rgb[3 * (y * width + x) + channel]`.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Default, PartialEq, Eq)]
 pub struct Frame {
     size: SizePx,
     rgb: Vec<u8>,
@@ -86,5 +91,12 @@ impl Frame {
     #[must_use]
     pub fn into_rgb(self) -> Vec<u8> {
         self.rgb
+    }
+}
+
+impl fmt::Debug for Frame {
+    /// The size only: a megabyte of levels helps nobody.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Frame({}×{})", self.size.width, self.size.height)
     }
 }
