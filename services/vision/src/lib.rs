@@ -11,16 +11,23 @@
 //! right, y down, so the centre of the first pixel is (0.5, 0.5); colours are 8-bit levels in the order R, G, B;
 //! variances are the population's.
 
+pub mod bitmask;
+pub mod components;
+mod adaptive;
 pub mod frame;
 pub mod geometry;
 pub mod landmark;
+pub mod learn;
 pub mod outcome;
 pub mod probe;
 pub mod timestamp;
 
+pub use bitmask::{BitMask, Run};
+pub use components::{Component, Components};
 pub use frame::Frame;
 pub use geometry::{PointPx, RectPx, Segment, SizePx};
 pub use landmark::{ColorStats, Digest, Landmark, LandmarkSet, SetVersion, ShapeClass, WindowPx};
+pub use learn::{LearnError, LearnOptions, learn};
 pub use outcome::{Gate, LandmarkOutcome, Miss, Outcome, Prediction, Sighting};
 pub use probe::{NoProbe, Stage, StageProbe};
 pub use timestamp::Timestamp;
