@@ -1,0 +1,36 @@
+//! The command line as a whole; each command's arguments stand in its own file.
+
+use clap::{Parser, Subcommand};
+
+use crate::commands::completion;
+
+/// What stands below the options.
+const EXIT_CODES: &str = "Exit codes: 0 fine, 1 failed, 2 usage or configuration, 3 finished with data lost.";
+
+/// Landmark registration for leader-follower convoys
+///
+/// A lead vehicle names landmarks by six colour statistics; following vehicles find them in their own cameras and
+/// record what they saw. Coordinates are frame pixels: origin at the top-left corner, x right, y down, centre of the
+/// first pixel at (0.5, 0.5).
+#[derive(Debug, Parser)]
+#[command(name = "waymark", version, after_help = EXIT_CODES)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Completion(completion::Args),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Cli;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}
