@@ -1,0 +1,135 @@
+//! Which pixels of a bounding box are the object's: colours that fill its middle and are rare around it.
+
+use super::windows::Sample;
+use crate::adaptive::palette::{Cluster, levels, nearest, palette};
+use crate::frame::Frame;
+use crate::geometry::RectPx;
+
+/// Colours closer than this count as one, levels; wider for small regions, most of whose pixels are mixtures.
+fn palette_radius(region: RectPx) -> f32 {
+    let side = region.width.min(region.height) as f32;
+    22.0 + (2.0 * (20.0 - side)).clamp(0.0, 18.0)
+}
+const PALETTE_LIMIT: usize = 24;
+/// How many times denser than outside the box a colour must be in its middle to be the object's.
+const DENSITY_RATIO: f32 = 3.0;
+/// Shades that cover less of the object are left to convex filling and soft edges.
+const MIN_SHARE: f32 = 0.10;
+
+/// The object's shades in one region and the pixels that show them.
+pub(super) fn sample(frame: &Frame, region: RectPx) -> Sample {
+    let colours = palette(pixels(frame, neighbourhood(frame, region)), palette_radius(region), PALETTE_LIMIT);
+    let own = object_colours(frame, region, &colours);
+    let label_of = |pixel: [u8; 3]| match nearest(&colours, levels(pixel)) {
+        Some((at, _)) if own[at] => Some(at),
+        _ => None,
+    };
+    let labels: Vec<Option<usize>> = pixels(frame, region).map(label_of).collect();
+    let labels = keep_shades(region, &labels, &colours);
+    Sample::new(frame, region, labels)
+}
+
+fn pixels(frame: &Frame, rect: RectPx) -> impl Iterator<Item = [u8; 3]> + '_ {
+    (rect.y..rect.y + rect.height)
+        .flat_map(move |y| (rect.x..rect.x + rect.width).map(move |x| frame.pixel(x, y)))
+}
+
+/// The region and two fifths of its size around it.
+fn neighbourhood(frame: &Frame, region: RectPx) -> RectPx {
+    let margin = |side: u32| (side * 2 / 5).max(4);
+    let (mx, my) = (margin(region.width), margin(region.height));
+    let (x, y) = (region.x.saturating_sub(mx), region.y.saturating_sub(my));
+    let width = (region.x + region.width).saturating_add(mx).min(frame.width()) - x;
+    let height = (region.y + region.height).saturating_add(my).min(frame.height()) - y;
+    RectPx { x, y, width, height }
+}
+
+/// For each colour whether it is the object's: much denser in the middle of the box than around the box.
+fn object_colours(frame: &Frame, region: RectPx, colours: &[Cluster]) -> Vec<bool> {
+    let mut middle = vec![0_u32; colours.len()];
+    let mut around = vec![0_u32; colours.len()];
+    let near = neighbourhood(frame, region);
+    for y in near.y..near.y + near.height {
+        for x in near.x..near.x + near.width {
+            let Some((at, _)) = nearest(colours, levels(frame.pixel(x, y))) else { continue };
+            match place(region, x, y) {
+                Place::Middle => middle[at] += 1,
+                Place::Around => around[at] += 1,
+                Place::Edge => {}
+            }
+        }
+    }
+    let share = |counts: &[u32], at: usize| counts[at] as f32 / counts.iter().sum::<u32>().max(1) as f32;
+    let ratio = |at: usize| share(&middle, at) / (share(&around, at) + 0.005);
+    let mut own: Vec<bool> =
+        (0..colours.len()).map(|at| ratio(at) >= DENSITY_RATIO && share(&middle, at) >= 0.02).collect();
+    // A box inside a larger thing of the same colour has no outside: its commonest colour must do.
+    if !own.contains(&true)
+        && let Some(best) =
+            (0..colours.len()).max_by(|&a, &b| share(&middle, a).total_cmp(&share(&middle, b)))
+    {
+        own[best] = true;
+    }
+    own
+}
+
+enum Place {
+    Middle,
+    Edge,
+    Around,
+}
+
+fn place(region: RectPx, x: u32, y: u32) -> Place {
+    let offset = |at: u32, start: u32, length: u32| {
+        (at as f32 + 0.5 - start as f32 - length as f32 / 2.0) / (length as f32 / 2.0)
+    };
+    let (dx, dy) = (offset(x, region.x, region.width), offset(y, region.y, region.height));
+    let outside_px = |d: f32, length: u32| (d.abs() - 1.0) * length as f32 / 2.0;
+    if dx * dx + dy * dy <= 0.64 {
+        Place::Middle
+    } else if outside_px(dx, region.width).max(outside_px(dy, region.height)) > 1.0 {
+        Place::Around
+    } else {
+        Place::Edge
+    }
+}
+
+/// Takes lettering, borders and mixed edge pixels away: what stays are shades of some extent that either hang
+/// together or are darker and lighter tones of the main one.
+fn keep_shades(region: RectPx, labels: &[Option<usize>], colours: &[Cluster]) -> Vec<Option<usize>> {
+    let count = |shade: usize| labels.iter().filter(|label| **label == Some(shade)).count();
+    let object = labels.iter().flatten().count().max(1) as f32;
+    let Some(main) =
+        (0..colours.len()).max_by_key(|&shade| (solid_pixels(region, labels, shade), count(shade)))
+    else {
+        return labels.to_vec();
+    };
+    let keep: Vec<bool> = (0..colours.len())
+        .map(|shade| {
+            let large = count(shade) as f32 >= MIN_SHARE * object;
+            let solid = solid_pixels(region, labels, shade) as f32 >= 0.3 * count(shade) as f32;
+            shade == main || (large && (solid || same_shading(colours[main].mean, colours[shade].mean)))
+        })
+        .collect();
+    labels.iter().map(|label| label.filter(|&shade| keep[shade])).collect()
+}
+
+/// Pixels of a shade whose whole neighbourhood shows it too. The neighbourhood grows with the region, so strokes of
+/// lettering and borders have none at any scale.
+fn solid_pixels(region: RectPx, labels: &[Option<usize>], shade: usize) -> usize {
+    let (width, height) = (region.width as usize, region.height as usize);
+    let reach = (width.min(height) / 14).max(1);
+    let is_shade = |x: usize, y: usize| labels[y * width + x] == Some(shade);
+    let solid =
+        |x: usize, y: usize| (y - reach..=y + reach).all(|v| (x - reach..=x + reach).all(|u| is_shade(u, v)));
+    let rows = reach..height.saturating_sub(reach);
+    rows.map(|y| (reach..width.saturating_sub(reach)).filter(|&x| solid(x, y)).count()).sum()
+}
+
+/// Whether `other` is `main` under more or less light: nearly proportional colours.
+pub(super) fn same_shading(main: [f32; 3], other: [f32; 3]) -> bool {
+    let dot = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f32>();
+    let gain = dot(main, other) / dot(main, main).max(1.0);
+    let rest = (0..3).map(|c| (other[c] - gain * main[c]).powi(2)).sum::<f32>();
+    (0.4..2.2).contains(&gain) && rest.sqrt() <= 18.0 * gain.max(1.0)
+}
