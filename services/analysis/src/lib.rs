@@ -1,1 +1,11 @@
 //! Offline: register, learn, explain, compare and report over files and recordings.
+//!
+//! The same [`vision::follow::Follow`] as in a follower, fed from files instead of streams, so that what is found here
+//! is what a vehicle finds. Nothing here prints: results are values, or go to a writer that the caller gives.
+
+pub mod region;
+pub mod row;
+pub mod score;
+pub mod stage_times;
+pub mod table;
+pub mod truth;
