@@ -15,10 +15,12 @@ pub mod bitmask;
 pub mod components;
 mod adaptive;
 pub mod frame;
+pub mod gate;
 pub mod geometry;
 pub mod landmark;
 pub mod learn;
 pub mod outcome;
+pub mod predict;
 pub mod probe;
 pub mod timestamp;
 
