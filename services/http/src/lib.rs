@@ -1,1 +1,37 @@
-//! The web face that leader and follower share: a hardened accept loop, problem details, picture and event streams, the embedded page.
+//! The web face that leader and follower share: a hardened accept loop, problem details, picture and event streams,
+//! the embedded page.
+//!
+//! It knows bytes and sequences, not landmarks: pictures are drawn by a function its owner hands in, events and
+//! documents are JSON that its owner makes. A service puts a router together from [`page`], [`Cameras::routes`] and
+//! routes of its own, and hands it to [`serve`].
+
+mod bare_answer;
+mod cameras;
+mod conditional;
+mod events;
+mod guard;
+mod health;
+mod metrics_text;
+mod mjpeg;
+mod page;
+mod parameters;
+mod pictures;
+mod policy;
+mod problem;
+mod renditions;
+mod serve;
+mod shell;
+mod stall;
+
+pub use cameras::Cameras;
+pub use conditional::{conditional, entity_tag};
+pub use events::Events;
+pub use health::{Check, health};
+pub use metrics_text::metrics_text;
+pub use page::page;
+pub use parameters::Parameters;
+pub use pictures::{Picture, PictureFeed, STALE_AFTER};
+pub use policy::{Access, Policy, Token, TokenError};
+pub use problem::{PROBLEM_JSON, Problem};
+pub use renditions::{Format, PictureRequest, Render};
+pub use serve::{ServeReport, serve};

@@ -1,0 +1,68 @@
+//! The inspection page, embedded at build time from `web/`.
+
+use crate::conditional::{conditional, tag_from_digest};
+use crate::problem::Problem;
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::Path;
+use axum::http::HeaderMap;
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use rust_embed::RustEmbed;
+use std::borrow::Cow;
+
+#[derive(RustEmbed)]
+#[folder = "../../web"]
+#[include = "*.html"]
+#[include = "*.css"]
+#[include = "*.js"]
+#[include = "*.svg"]
+struct Files;
+
+/// Routes for the page: `/` and the files it loads, each with an entity tag.
+pub fn page() -> Router {
+    Router::new()
+        .route("/", get(|headers: HeaderMap| async move { file("index.html", &headers) }))
+        .route("/favicon.ico", get(|headers: HeaderMap| async move { file("icon.svg", &headers) }))
+        .route(
+            "/{*name}",
+            get(|Path(name): Path<String>, headers: HeaderMap| async move { file(&name, &headers) }),
+        )
+}
+
+/// Names are looked up among the embedded ones exactly as they stand; no file system is involved.
+fn file(name: &str, request: &HeaderMap) -> Response {
+    let Some(file) = Files::get(name) else {
+        return Problem::not_found("page or file at this address").into_response();
+    };
+    let content = match file.data {
+        Cow::Borrowed(bytes) => Bytes::from_static(bytes),
+        Cow::Owned(bytes) => Bytes::from(bytes),
+    };
+    conditional(request, &tag_from_digest(&file.metadata.sha256_hash()), content_type(name), content)
+}
+
+fn content_type(name: &str) -> &'static str {
+    match name.rsplit_once('.').map(|(_, extension)| extension) {
+        Some("html") => "text/html; charset=utf-8",
+        Some("css") => "text/css; charset=utf-8",
+        Some("js") => "text/javascript; charset=utf-8",
+        Some("svg") => "image/svg+xml",
+        _ => "application/octet-stream",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_is_embedded_and_names_are_exact() {
+        let request = HeaderMap::new();
+        assert_eq!(file("index.html", &request).status(), 200);
+        for name in ["../Cargo.toml", "./index.html", "index.html\0", "/etc/passwd", "%2e%2e/Cargo.toml", ""]
+        {
+            assert_eq!(file(name, &request).status(), 404, "{name:?}");
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Encoded views of a picture, each made once however many look at it, and none when nobody looks.
+
+use crate::pictures::Picture;
+use crate::problem::Problem;
+use axum::body::Bytes;
+use axum::http::StatusCode;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::sync::{OnceCell, Semaphore};
+
+/// What a viewer asks for. Layer names are the owner's.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct PictureRequest {
+    /// JPEG or PNG.
+    pub format: Format,
+    /// What to draw over the frame, out of the owner's layers; `None` is the bare frame.
+    pub layers: Option<Vec<&'static str>>,
+    /// Wanted width in pixels; `None` is the frame's own.
+    pub width_px: Option<u32>,
+    /// JPEG quality, 1..=100.
+    pub quality: u8,
+}
+
+/// How a picture is encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// JPEG.
+    Jpeg,
+    /// PNG.
+    Png,
+}
+
+impl Format {
+    /// Its media type.
+    #[must_use]
+    pub const fn content_type(self) -> &'static str {
+        match self {
+            Self::Jpeg => "image/jpeg",
+            Self::Png => "image/png",
+        }
+    }
+}
+
+/// Draws and encodes one view; runs on a thread that may block. The error is told to the viewer.
+pub type Render<T> = dyn Fn(&T, &PictureRequest) -> Result<Vec<u8>, String> + Send + Sync;
+
+/// Views kept of the newest picture; further ones are made but not kept.
+const MAX_KEPT: usize = 16;
+
+/// Encodes under way at once for one camera, so that viewers cannot take the registration's cores.
+const MAX_ENCODES: usize = 1;
+
+type Cell = Arc<OnceCell<Bytes>>;
+
+/// The views of one picture, known by sequence and capture time: a camera that starts anew counts anew.
+#[derive(Default)]
+struct Kept {
+    picture: (u64, i64),
+    views: HashMap<PictureRequest, Cell>,
+}
+
+/// Makes views of one camera's pictures.
+pub(crate) struct Renditions<T> {
+    render: Arc<Render<T>>,
+    encodes: Arc<Semaphore>,
+    kept: Mutex<Kept>,
+}
+
+impl<T: Send + Sync + 'static> Renditions<T> {
+    /// Views made by `render`.
+    pub(crate) fn new(render: Arc<Render<T>>) -> Self {
+        Self { render, encodes: Arc::new(Semaphore::new(MAX_ENCODES)), kept: Mutex::default() }
+    }
+
+    /// The view of this picture, made now unless another viewer had it made already.
+    ///
+    /// # Errors
+    /// 500 when the picture cannot be drawn or encoded.
+    pub(crate) async fn view(
+        &self,
+        picture: &Picture<T>,
+        request: &PictureRequest,
+    ) -> Result<Bytes, Problem> {
+        let cell = self.cell(picture, request);
+        cell.get_or_try_init(|| self.encode(Arc::clone(&picture.source), request.clone())).await.cloned()
+    }
+
+    fn cell(&self, picture: &Picture<T>, request: &PictureRequest) -> Cell {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let identity = (picture.sequence, picture.captured_at_ns);
+        if kept.picture != identity {
+            *kept = Kept { picture: identity, views: HashMap::new() };
+        }
+        if kept.views.len() >= MAX_KEPT && !kept.views.contains_key(request) {
+            return Cell::default();
+        }
+        Arc::clone(kept.views.entry(request.clone()).or_default())
+    }
+
+    async fn encode(&self, source: Arc<T>, request: PictureRequest) -> Result<Bytes, Problem> {
+        let failed = |detail: String| Problem::new(StatusCode::INTERNAL_SERVER_ERROR, detail);
+        let permit =
+            Arc::clone(&self.encodes).acquire_owned().await.map_err(|error| failed(error.to_string()))?;
+        let render = Arc::clone(&self.render);
+        metrics::counter!("waymark_http_encodes_total").increment(1);
+        let encoded = tokio::task::spawn_blocking(move || {
+            let _permit = permit;
+            render(&source, &request)
+        });
+        match encoded.await {
+            Ok(Ok(bytes)) => Ok(Bytes::from(bytes)),
+            Ok(Err(reason)) => Err(failed(format!("the picture cannot be shown: {reason}"))),
+            Err(_) => Err(failed("drawing the picture failed".to_owned())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use tokio::time::Instant;
+
+    fn request(quality: u8) -> PictureRequest {
+        PictureRequest { format: Format::Jpeg, layers: None, width_px: None, quality }
+    }
+
+    fn picture(sequence: u64) -> Picture<u8> {
+        Picture { sequence, captured_at_ns: 0, received_at: Instant::now(), source: Arc::new(9) }
+    }
+
+    #[tokio::test]
+    async fn many_viewers_cost_one_encode() {
+        let encodes = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&encodes);
+        let views = Renditions::new(Arc::new(move |source: &u8, request: &PictureRequest| {
+            counted.fetch_add(1, Ordering::Relaxed);
+            Ok(vec![*source, request.quality])
+        }));
+        let (picture, request) = (picture(1), request(80));
+        let all = futures_util::future::join_all((0..50).map(|_| views.view(&picture, &request))).await;
+        assert!(all.iter().all(|view| view.as_ref().unwrap().as_ref() == [9, 80]));
+        assert_eq!(encodes.load(Ordering::Relaxed), 1);
+    }
+
+    #[tokio::test]
+    async fn other_parameters_and_other_pictures_are_made_anew_and_memory_is_bounded() {
+        let views = Renditions::new(Arc::new(|_: &u8, request: &PictureRequest| Ok(vec![request.quality])));
+        for quality in 1..=100 {
+            assert_eq!(views.view(&picture(1), &request(quality)).await.unwrap().as_ref(), [quality]);
+        }
+        assert_eq!(views.kept.lock().unwrap().views.len(), MAX_KEPT);
+        views.view(&picture(2), &request(1)).await.unwrap();
+        assert_eq!(views.kept.lock().unwrap().views.len(), 1);
+    }
+
+    #[tokio::test]
+    async fn a_picture_that_cannot_be_drawn_is_a_problem() {
+        let views = Renditions::new(Arc::new(|_: &u8, _: &PictureRequest| Err("no decoder".to_owned())));
+        let problem = views.view(&picture(1), &request(80)).await.unwrap_err();
+        assert_eq!(problem.status(), 500);
+        assert!(problem.to_string().contains("no decoder"));
+    }
+}
