@@ -2,6 +2,8 @@
 
 import socket
 from collections.abc import Iterator
+from itertools import islice
+from threading import Event
 
 import pytest
 import zenoh
@@ -9,6 +11,7 @@ from examples import make_landmark, make_manifest, make_registration
 
 import waymark
 from waymark import Attachment, Retired, keys
+from waymark.live import Registrations
 from waymark.v1 import Landmark
 
 FLEET, LEADER = "convoy", "leader"
@@ -32,6 +35,12 @@ def sessions() -> Iterator[tuple[zenoh.Session, zenoh.Session]]:
     with zenoh.open(session_config("listen", endpoint)) as vehicle:
         with zenoh.open(session_config("connect", endpoint)) as reader:
             yield vehicle, reader
+
+
+def await_subscriber(publisher: zenoh.Publisher) -> None:
+    matched = Event()
+    publisher.declare_matching_listener(lambda status: matched.set() if status.matching else None)
+    assert matched.wait(10), "the subscription never became known to the publisher"
 
 
 class Leader:
@@ -86,10 +95,11 @@ def test_registrations_arrive_with_their_attachment_and_gaps_are_counted(
     vehicle, reader = sessions
     with waymark.registrations(reader, fleet=FLEET, timeout_s=10) as stream:
         publisher = vehicle.declare_publisher(keys.registration(FLEET, "follower", "front"))
+        await_subscriber(publisher)
         for sequence in (4, 5, 8):
             attachment = Attachment(sequence, sequence * 1_000_000, b"0123456789abcdef")
             publisher.put(make_registration(sequence).SerializeToString(), attachment=attachment.to_bytes())
-        received = [entry for entry, _ in zip(stream, range(3))]
+        received = list(islice(stream, 3))
     assert [entry.message.sequence for entry in received] == [4, 5, 8]
     assert received[0].key == "waymark/v1/convoy/follower/camera/front/registration"
     assert received[0].attachment == Attachment(4, 4_000_000, b"0123456789abcdef")
@@ -99,10 +109,14 @@ def test_registrations_arrive_with_their_attachment_and_gaps_are_counted(
 
 def test_a_slow_reader_refuses_and_counts(sessions: tuple[zenoh.Session, zenoh.Session]) -> None:
     _, reader = sessions
-    with waymark.registrations(reader, fleet=FLEET, capacity=2) as stream:
-        for sequence in range(5):
-            reader.put(keys.registration(FLEET, "f", "c"), make_registration(sequence).SerializeToString())
-        assert [entry.message.sequence for entry, _ in zip(stream, range(2))] == [0, 1]
+    key = keys.registration(FLEET, "follower", "front")
+    with reader.declare_subscriber(key) as subscriber:
+        reader.put(key, make_registration(1).SerializeToString())
+        sample = subscriber.recv()
+    with Registrations(capacity=2, timeout_s=10) as stream:
+        for _ in range(5):
+            stream.offer(sample)
+        assert [entry.message.sequence for entry in islice(stream, 2)] == [1, 1]
         assert stream.refused == 3
 
 

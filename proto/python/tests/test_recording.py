@@ -28,7 +28,7 @@ def write(path: Path, messages: list[tuple[str, Message]]) -> Path:
             writer.add_message(
                 channels[topic], log_time=number, publish_time=number, sequence=number, data=message.SerializeToString()
             )
-        writer.finish()
+        writer.finish()  # type: ignore[no-untyped-call]
     return path
 
 

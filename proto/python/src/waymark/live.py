@@ -66,7 +66,14 @@ class Stream(Generic[T]):
 
     def subscribe(self, session: zenoh.Session, key: str) -> None:
         """Adds what is published below ``key``."""
-        self._subscriptions.append(session.declare_subscriber(key, self._offer))
+        self._subscriptions.append(session.declare_subscriber(key, self.offer))
+
+    def offer(self, sample: zenoh.Sample) -> None:
+        """Takes a sample, or refuses it when the queue is full; never waits."""
+        try:
+            self._waiting.put_nowait(sample)
+        except queue.Full:
+            self.refused += 1
 
     def samples(self) -> Iterator[tuple[zenoh.Sample, Attachment | None]]:
         """Waits for each sample. Raises ``TimeoutError`` after ``timeout_s`` without one."""
@@ -92,12 +99,6 @@ class Stream(Generic[T]):
                 return
             except queue.Full:
                 self._waiting.get_nowait()
-
-    def _offer(self, sample: zenoh.Sample) -> None:
-        try:
-            self._waiting.put_nowait(sample)
-        except queue.Full:
-            self.refused += 1
 
     def __enter__(self) -> Self:
         return self
