@@ -6,7 +6,8 @@ from examples import make_landmark
 
 from waymark import Attachment, keys
 from waymark.attachment import GapCounter
-from waymark.digest import landmark_digest
+from waymark.digest import landmark_digest, set_digest
+from waymark.v1 import ColorStats, Landmark, ShapeClass
 
 
 def test_the_attachment_has_the_layout_of_rmw_zenoh() -> None:
@@ -40,6 +41,21 @@ def test_keys_take_ids_and_wildcards() -> None:
 def test_names_that_are_no_ids_are_refused(name: str) -> None:
     with pytest.raises(ValueError, match="is no id"):
         keys.landmark("convoy", "leader", name)
+
+
+def test_the_digests_are_those_of_the_test_vector_in_landmark_proto() -> None:
+    landmark = Landmark(
+        id="red",
+        window_width_px=12,
+        window_height_px=8,
+        shades=[ColorStats(mean=[176.5, 32, 41.25], variance=[90, 60.5, 55])],
+        tolerance=ColorStats(mean=[15] * 3, variance=[50] * 3),
+        shape=ShapeClass.SHAPE_CLASS_BLOCK,
+        size_m=0.4,
+    )
+    landmark.digest = landmark_digest(landmark)
+    assert landmark.digest.hex() == "062504781e71e47ad2ff8f2a3e9b60f9bfcfbe3972d0cf42fc90cb7154825762"
+    assert set_digest([landmark]).hex() == "04865ab884aad2551eda642ea448500602344e1518929c3cd0528cc4b9e65793"
 
 
 def test_the_digest_changes_with_content_but_not_with_revision() -> None:
