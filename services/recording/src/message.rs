@@ -1,0 +1,89 @@
+//! What is recorded: bytes on a channel, with their times.
+
+use std::sync::Arc;
+
+use bytes::Bytes;
+
+/// A protobuf schema as MCAP wants it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Schema {
+    /// Fully qualified message name, e.g. `foxglove.CompressedImage`.
+    pub name: String,
+    /// Serialised `FileDescriptorSet` with all imports.
+    pub file_descriptor_set: Bytes,
+}
+
+/// A topic and how to read it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ChannelSpec {
+    /// Topic in the file, e.g. `/car-1/camera/front/image`.
+    pub topic: String,
+    /// Key expression the messages came from; kept in the channel's metadata as `key_expression`.
+    pub key_expression: String,
+    /// Schema of every message on this channel.
+    pub schema: Schema,
+}
+
+/// Names a latched value: a newer message with the same key replaces it.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LatchKey(pub String);
+
+/// Whether a message is state that every file must hold at its head, so that the file stands alone.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Latch {
+    /// An event: stored once.
+    #[default]
+    None,
+    /// State: stored when it arrives and repeated at the head of every later file (landmarks, calibration).
+    Repeat(LatchKey),
+    /// State too frequent to store each time (a camera's `Follow` state): stored at the head of each file,
+    /// and once more at its first change after that, because frames were in flight when the file began.
+    HeadOnly(LatchKey),
+}
+
+impl Latch {
+    pub(crate) fn key(&self) -> Option<&LatchKey> {
+        match self {
+            Latch::None => None,
+            Latch::Repeat(key) | Latch::HeadOnly(key) => Some(key),
+        }
+    }
+}
+
+/// One message to record.
+#[derive(Debug, Clone)]
+pub struct Message {
+    /// Where it belongs.
+    pub channel: Arc<ChannelSpec>,
+    /// Receipt, nanoseconds since the Unix epoch.
+    pub log_time_ns: u64,
+    /// Capture, nanoseconds since the Unix epoch.
+    pub publish_time_ns: u64,
+    /// Low 32 bits of the sender's sequence number.
+    pub sequence: u32,
+    /// The encoded protobuf message.
+    pub data: Bytes,
+    /// Whether it is repeated at the head of later files.
+    pub latch: Latch,
+}
+
+impl Message {
+    /// Memory it holds while queued, bytes: payload plus bookkeeping.
+    pub(crate) fn queued_bytes(&self) -> usize {
+        self.data.len() + size_of::<Message>()
+    }
+}
+
+/// A file within the recording, such as the landmark set as JSON. The newest of each name is written into
+/// every file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Attachment {
+    /// Name shown to the reader, e.g. `landmarks.json`.
+    pub name: String,
+    /// Media type, e.g. `application/json`.
+    pub media_type: String,
+    /// When it came into force, nanoseconds since the Unix epoch.
+    pub log_time_ns: u64,
+    /// Its content.
+    pub data: Bytes,
+}

@@ -1,0 +1,86 @@
+//! What this crate's tests share.
+
+use std::{path::Path, sync::Arc, time::Duration};
+
+use bytes::Bytes;
+
+use crate::{
+    ChannelSpec, Command, Disk, JournalOptions, Latch, LatchKey, Message, Now, Recorder, Schema,
+    reader::{MessageReader, Strictness},
+    walk::RecordedMessage,
+};
+
+/// The wall clock all tests start at: 2024-03-01T00:00:00Z.
+pub(crate) const START_NS: u64 = 1_709_251_200_000_000_000;
+
+pub(crate) fn channel(topic: &str) -> Arc<ChannelSpec> {
+    Arc::new(ChannelSpec {
+        topic: topic.to_owned(),
+        key_expression: format!("waymark/v1/test{topic}"),
+        schema: Schema {
+            name: "test.Message".to_owned(),
+            file_descriptor_set: Bytes::from_static(b"\x0a\x00"),
+        },
+    })
+}
+
+/// Message `sequence` on `channel`, `bytes` long, filled with what tells it from every other.
+pub(crate) fn message(channel: &Arc<ChannelSpec>, sequence: u32, bytes: usize) -> Message {
+    let mut random = u64::from(sequence).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let noise = std::iter::repeat_with(|| {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        random as u8
+    });
+    let log_time_ns = START_NS + u64::from(sequence) * 1_000_000;
+    Message {
+        channel: Arc::clone(channel),
+        log_time_ns,
+        publish_time_ns: log_time_ns - 500_000,
+        sequence,
+        data: noise.take(bytes).collect(),
+        latch: Latch::None,
+    }
+}
+
+pub(crate) fn latched(channel: &Arc<ChannelSpec>, sequence: u32, key: &str) -> Message {
+    Message { latch: Latch::Repeat(LatchKey(key.to_owned())), ..message(channel, sequence, 40) }
+}
+
+pub(crate) fn head_only(channel: &Arc<ChannelSpec>, sequence: u32, key: &str) -> Message {
+    Message { latch: Latch::HeadOnly(LatchKey(key.to_owned())), ..message(channel, sequence, 40) }
+}
+
+/// Time `ms` milliseconds into a test.
+pub(crate) fn at_ms(ms: u64) -> Now {
+    Now { elapsed: Duration::from_millis(ms), unix_ns: START_NS + ms * 1_000_000 }
+}
+
+/// Options without a free-space floor, so that tests do not depend on the machine's disk.
+pub(crate) fn options(directory: &Path) -> JournalOptions {
+    JournalOptions { free_floor_bytes: 0, ..JournalOptions::new(directory, "car") }
+}
+
+pub(crate) fn recorder(options: JournalOptions) -> Recorder<Disk> {
+    let disk = Disk::new(&options.directory);
+    let mut recorder = Recorder::new(options, disk).unwrap();
+    recorder.command(Command::Start, at_ms(0));
+    recorder
+}
+
+pub(crate) fn read_strictly(path: &Path) -> Vec<RecordedMessage> {
+    MessageReader::open(path, Strictness::Strict).unwrap().map(Result::unwrap).collect()
+}
+
+/// Names in `directory`, sorted.
+pub(crate) fn names(directory: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(directory).unwrap();
+    let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+pub(crate) fn sequences_on(messages: &[RecordedMessage], topic: &str) -> Vec<u32> {
+    messages.iter().filter(|m| m.channel.topic == topic).map(|m| m.sequence).collect()
+}
