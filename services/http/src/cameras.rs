@@ -5,13 +5,14 @@ use crate::parameters::Parameters;
 use crate::pictures::{Picture, PictureFeed};
 use crate::problem::Problem;
 use crate::renditions::{Format, PictureRequest, Render, Renditions};
-use axum::Router;
 use axum::body::Bytes;
 use axum::extract::{Path, State};
 use axum::http::header::CONTENT_TYPE;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Uri};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use axum::{Json, Router};
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
@@ -51,9 +52,10 @@ impl<T: Send + Sync + 'static> Cameras<T> {
         self.cameras.get(id).map(|camera| &camera.feed)
     }
 
-    /// `/api/v1/cameras/{camera}/` `frame.jpg`, `overlay.jpg`, `overlay.png` and `stream.mjpeg`.
+    /// `/api/v1/cameras`, and below it for each camera `frame.jpg`, `overlay.jpg`, `overlay.png` and `stream.mjpeg`.
     pub fn routes(self: &Arc<Self>) -> Router {
         Router::new()
+            .route("/api/v1/cameras", get(index::<T>))
             .route("/api/v1/cameras/{camera}/frame.jpg", get(frame::<T>))
             .route("/api/v1/cameras/{camera}/overlay.jpg", get(overlay_jpeg::<T>))
             .route("/api/v1/cameras/{camera}/overlay.png", get(overlay_png::<T>))
@@ -67,6 +69,11 @@ impl<T: Send + Sync + 'static> Cameras<T> {
 }
 
 type Shared<T> = State<Arc<Cameras<T>>>;
+
+/// Which cameras there are and which layers can be drawn.
+async fn index<T: Send + Sync + 'static>(State(cameras): Shared<T>) -> Json<Value> {
+    Json(json!({ "cameras": cameras.cameras.keys().collect::<Vec<_>>(), "layers": cameras.layers }))
+}
 
 async fn frame<T: Send + Sync + 'static>(
     State(cameras): Shared<T>,

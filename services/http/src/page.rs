@@ -4,7 +4,6 @@ use crate::conditional::{conditional, tag_from_digest};
 use crate::problem::Problem;
 use axum::Router;
 use axum::body::Bytes;
-use axum::extract::Path;
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
@@ -19,15 +18,14 @@ use std::borrow::Cow;
 #[include = "*.svg"]
 struct Files;
 
-/// Routes for the page: `/` and the files it loads, each with an entity tag.
+/// Routes for the page: `/` and a route for each file it loads, with entity tags. Nothing else is served.
 pub fn page() -> Router {
-    Router::new()
-        .route("/", get(|headers: HeaderMap| async move { file("index.html", &headers) }))
-        .route("/favicon.ico", get(|headers: HeaderMap| async move { file("icon.svg", &headers) }))
-        .route(
-            "/{*name}",
-            get(|Path(name): Path<String>, headers: HeaderMap| async move { file(&name, &headers) }),
-        )
+    let files = Files::iter().map(|name| (format!("/{name}"), name.into_owned()));
+    let aliases = [("/", "index.html"), ("/favicon.ico", "icon.svg")];
+    let aliases = aliases.map(|(path, name)| (path.to_owned(), name.to_owned()));
+    files.chain(aliases).fold(Router::new(), |router, (path, name)| {
+        router.route(&path, get(async move |headers: HeaderMap| file(&name, &headers)))
+    })
 }
 
 /// Names are looked up among the embedded ones exactly as they stand; no file system is involved.

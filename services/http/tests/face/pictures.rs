@@ -19,6 +19,13 @@ async fn a_picture_says_which_frame_it_shows() {
 }
 
 #[tokio::test]
+async fn cameras_and_layers_are_listed() {
+    let server = Server::start(Policy::default()).await;
+    let answer = server.get("/api/v1/cameras").await;
+    assert!(answer.ends_with(r#"{"cameras":["front"],"layers":["outline","gate"]}"#), "{answer}");
+}
+
+#[tokio::test]
 async fn a_long_poll_gets_the_next_picture() {
     let server = Server::start(Policy::default()).await;
     server.publish(7, 3);

@@ -1,0 +1,88 @@
+// The states that the page must show well, each as the JSON that a follower would give.
+
+export const STATES = ["well", "no-camera", "stale", "no-landmark", "one-lost", "recording-failed", "thirty", "read-only", "leader-gone"];
+
+const RED = { mean: [181, 52, 47], variance: [310, 95, 88] };
+const BLUE = { mean: [44, 71, 158], variance: [70, 102, 240] };
+
+/** @param {string} id @param {object[]} shades @param {string} shape */
+function landmark(id, shades, shape) {
+  return {
+    id, revision: 1, digest: "5d".repeat(32), window_px: [12, 12], shape, size_m: 0.3, shades,
+    tolerance: { mean: [15, 15, 15], variance: [150, 150, 150] },
+  };
+}
+
+/** @param {string} state */
+function landmarksIn(state) {
+  if (state === "no-landmark" || state === "no-camera") return [];
+  if (state === "thirty") {
+    return Array.from({ length: 30 }, (_, n) => landmark(`sign-${String(n + 1).padStart(2, "0")}`, n % 2 ? [RED, BLUE] : [BLUE], "rectangle"));
+  }
+  return [landmark("blue", [BLUE], "block"), landmark("red", [RED, { ...RED, mean: [140, 38, 36] }], "block")];
+}
+
+/** @param {string} state */
+export function makeWorld(state) {
+  const startedAt = Date.now();
+  const set = landmarksIn(state);
+  let sequence = 0;
+  const noise = (/** @type {number} */ size) => (Math.random() - 0.5) * size;
+
+  const measured = (/** @type {any} */ one, /** @type {number} */ index) => ({
+    id: one.id, instance: 0, result: "measured",
+    x_px: 320 + 120 * Math.sin(sequence / 60 + index), y_px: 260 + noise(2), area_px2: 1840 + 300 * Math.sin(sequence / 90) + noise(20),
+    score: 0.91 + noise(0.04), shape_score: 0.84 + noise(0.05), innovation_px: Math.abs(noise(3)), gain: 0.96 + 0.08 * Math.sin(sequence / 100),
+    predicted_x_px: 320, predicted_y_px: 260,
+    observed: {
+      mean: one.shades[0].mean.map((/** @type {number} */ value) => value + noise(20)),
+      variance: one.shades[0].variance.map((/** @type {number} */ value) => value + noise(60)),
+    },
+    miss: null,
+  });
+  const missed = (/** @type {any} */ one, /** @type {string} */ reason, /** @type {object} */ figures) => ({
+    id: one.id, instance: 0, result: reason, x_px: null, y_px: null, area_px2: null, score: null, shape_score: null,
+    innovation_px: null, gain: null, predicted_x_px: 300, predicted_y_px: 250, observed: null, miss: { reason, ...figures },
+  });
+  const misses = [["no_colour", { excess: 2.4 }], ["wrong_shape", { shape_score: 0.31 }], ["outside_gate", { innovation_px: 84 }], ["too_small", {}]];
+  const results = () => set.map((one, index) => {
+    if (state === "one-lost" && index === 1) return missed(one, "no_colour", { excess: 2.4, observed: { mean: [120, 90, 80], variance: [800, 300, 200] } });
+    if (state === "thirty" && index % 5 === 4) return missed(one, ...misses[(index / 5 | 0) % 4]);
+    return measured(one, index);
+  });
+
+  return {
+    get sequence() { return sequence; },
+    tick() {
+      if (state === "no-camera" || (state === "stale" && sequence > 60)) return false;
+      sequence += 1;
+      return true;
+    },
+    refusal() {
+      if (state === "no-camera") return "no picture has arrived yet";
+      if (state === "stale" && sequence > 60) return "the newest picture is 14.2 s old; the camera has stopped";
+      return null;
+    },
+    landmarks: () => ({ version: { epoch: 3, version: 7 }, landmarks: set }),
+    fleet: () => ({ vehicles: [{ vehicle: "lead", role: "leader", age_s: 0.4 }, { vehicle: "follower-1", role: "follower", age_s: 0.1 }] }),
+    status: () => ({
+      vehicle: "follower-1", role: "follower", version: "0.1.0", uptime_s: 4021 + (Date.now() - startedAt) / 1000,
+      access: state === "read-only" ? "read_only" : "open",
+      leader: { vehicle: "lead", present: state !== "leader-gone", age_s: state === "leader-gone" ? 48 : 0.4 },
+      router: { connected: true },
+      landmarks: set.length,
+      cameras: state === "no-camera" ? [] : [{
+        id: "front", state: this_state(), sequence, age_ms: state === "stale" && sequence > 60 ? 14200 : 18, fps: 29.8 + noise(0.4),
+        latency_ms: 21 + noise(6), processing_ms: 2.2 + noise(0.6),
+        dropped: { missed: 3, replaced: 0, undecodable: 0, refused: 0, unread: 0 }, landmarks: results(),
+      }],
+      recorder: state === "recording-failed"
+        ? { state: "failed", file: null, bytes: 0, lost: 812, free_bytes: 0, reason: "no space left on the disk" }
+        : { state: "recording", file: "recordings/2026-11-22T18-36-04Z_follower-1_0003.mcap.active", bytes: 48_211_004 + sequence * 61_000, lost: 0, free_bytes: 212_000_000_000 },
+    }),
+  };
+
+  function this_state() {
+    return state === "stale" && sequence > 60 ? "stale" : "live";
+  }
+}

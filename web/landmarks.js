@@ -1,0 +1,106 @@
+// The landmark table: what is looked for, what was observed, and why not.
+
+import { byId, make, makeState, reconcile, setText, showState } from "./dom.js";
+import { known } from "./state.js";
+import { compare } from "./statistics.js";
+import { MISSING, figure, missInWords } from "./words.js";
+
+/** @type {Map<string, HTMLTableRowElement>} */
+const rows = new Map();
+
+/** Every landmark in force, with each instance seen by the camera shown. */
+function entries() {
+  const camera = known.camera ? known.cameras.get(known.camera) : null;
+  const seen = camera?.landmarks ?? [];
+  return known.landmarks.flatMap((landmark) => {
+    const instances = seen.filter((/** @type {any} */ entry) => entry.id === landmark.id);
+    const shown = instances.length > 0 ? instances : [{ id: landmark.id, instance: 0, result: null }];
+    return shown.map((/** @type {any} */ entry) => ({ key: `${landmark.id}#${entry.instance}`, landmark, entry, several: shown.length > 1 }));
+  });
+}
+
+/** Shows what is known now. */
+export function showLandmarks() {
+  const all = entries();
+  const body = byId("landmarks").querySelector("tbody");
+  if (!body) return;
+  reconcile(body, rows, all.map((one) => one.key), makeRow);
+  for (const one of all) fillRow(/** @type {HTMLTableRowElement} */ (rows.get(one.key)), one);
+  byId("landmarks").hidden = all.length === 0;
+  byId("landmark-none").hidden = all.length > 0;
+  const measured = all.filter((one) => one.entry.result === "measured").length;
+  const version = known.version ? ` · set ${known.version.epoch}.${known.version.version}` : "";
+  setText(byId("landmark-facts"), `${measured} of ${all.length} measured${version}`);
+}
+
+/** @param {string} key */
+function makeRow(key) {
+  const name = make("th", "", make("span", "name"), make("span", "kind quiet"));
+  name.scope = "row";
+  const result = make("td", "result", makeState());
+  const [mean, variance] = ["mean", "variance"].map((kind) =>
+    make("td", kind, make("div", "channels", ...["R", "G", "B"].map(makeStatistic))));
+  mean.dataset.label = "Mean, levels";
+  variance.dataset.label = "Variance, levels²";
+  const facts = make("td", "", make("dl", "facts-list"));
+  facts.dataset.label = "Where and how well";
+  const row = make("tr", "", name, result, mean, variance, facts);
+  row.dataset.key = key;
+  return row;
+}
+
+/** @param {string} channel */
+function makeStatistic(channel) {
+  return make("div", "statistic",
+    make("span", "channel quiet", channel), make("span", "expected quiet"), make("span", "observed"), makeState("verdict"));
+}
+
+/** @param {HTMLTableRowElement} row @param {{landmark: any, entry: any, several: boolean}} one */
+function fillRow(row, { landmark, entry, several }) {
+  const [name, result, mean, variance, facts] = row.children;
+  setText(name.children[0], several ? `${landmark.id} #${entry.instance}` : landmark.id);
+  const comparison = compare(landmark, entry.observed ?? entry.miss?.observed, entry.gain);
+  const shade = comparison.shades > 1 ? ` · shade ${comparison.shade} of ${comparison.shades}` : "";
+  setText(name.children[1], `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}`);
+  fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry);
+  comparison.mean.forEach((one, index) => fillStatistic(mean.children[0].children[index], one));
+  comparison.variance.forEach((one, index) => fillStatistic(variance.children[0].children[index], one));
+  fillFacts(facts.firstElementChild, entry);
+}
+
+/** @param {HTMLElement} state @param {any} entry */
+function fillResult(state, entry) {
+  if (entry.result === null) showState(state, "unknown", "not looked for yet");
+  else if (entry.result === "measured") showState(state, "good", "measured");
+  else showState(state, "bad", `missed: ${missInWords(entry.result, entry.miss)}`);
+}
+
+/** @param {Element} element @param {import("./statistics.js").Comparison} one */
+function fillStatistic(element, one) {
+  const [, expected, observed, verdict] = element.children;
+  setText(expected, `${one.expected.toFixed(0)} ± ${one.tolerance.toFixed(0)}`);
+  setText(observed, figure(one.observed, 0));
+  const state = /** @type {HTMLElement} */ (verdict);
+  if (one.within === null || one.offBy === null) showState(state, "unknown", MISSING);
+  else if (one.within) showState(state, "good", "within");
+  else showState(state, "bad", `${Math.max(1, Math.abs(one.offBy)).toFixed(0)} ${one.offBy > 0 ? "over" : "under"}`);
+}
+
+/** @param {Element | null} list @param {any} entry */
+function fillFacts(list, entry) {
+  if (!list) return;
+  const place = typeof entry.x_px === "number" ? `${entry.x_px.toFixed(1)}, ${entry.y_px.toFixed(1)} px` : MISSING;
+  const facts = [
+    ["Centre", place],
+    ["Area", figure(entry.area_px2, 0, "px²")],
+    ["Score", figure(entry.score, 2)],
+    ["Shape", figure(entry.shape_score, 2)],
+    ["Gain", typeof entry.gain === "number" ? `× ${entry.gain.toFixed(2)}` : MISSING],
+    ["Off prediction", figure(entry.innovation_px, 1, "px")],
+  ];
+  while (list.children.length < facts.length) list.append(make("div", "", make("dt"), make("dd")));
+  facts.forEach(([name, value], index) => {
+    setText(list.children[index].children[0], name);
+    setText(list.children[index].children[1], value);
+  });
+}

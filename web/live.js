@@ -1,0 +1,158 @@
+// The live picture: asked for frame by frame, so that what is drawn and what is said belong to the same frame.
+
+import { Problem, nextPicture } from "./api.js";
+import { byId, make, reconcile, setAttribute, setText } from "./dom.js";
+import { known } from "./state.js";
+import { duration, figure } from "./words.js";
+
+const LAYER_NAMES = {
+  outline: "Outline",
+  segments: "Hough segments",
+  vector: "Vector from origin",
+  prediction: "Prediction",
+  gate: "Gate",
+  mask: "Mask",
+  labels: "Labels",
+};
+
+/** Layers that hide what they cover are off until asked for. */
+const OFF_AT_FIRST = new Set(["mask"]);
+
+const keptLayers = new Map();
+const keptCameras = new Map();
+
+/** What the picture on the screen is. @type {{sequence: number, ageMs: number, at: number, width: number, height: number} | null} */
+let shown = null;
+/** Times of the last pictures, for the rate. @type {number[]} */
+let times = [];
+let loop = new AbortController();
+
+/** Starts, or starts anew with other layers or another camera. */
+export function restartLive() {
+  loop.abort();
+  loop = new AbortController();
+  if (known.camera && !document.hidden) void run(known.camera, loop.signal);
+}
+
+/** @param {string} camera @param {AbortSignal} stop */
+async function run(camera, stop) {
+  let after = null;
+  while (!stop.aborted) {
+    try {
+      const picture = await nextPicture(camera, [...known.layersOn], after, wantedWidth(), stop);
+      if (stop.aborted) return;
+      after = picture.sequence;
+      draw(picture);
+    } catch (error) {
+      if (stop.aborted) return;
+      if (error instanceof Problem) explain(error.message);
+      else explain("The service does not answer");
+      await pause(500, stop);
+    }
+  }
+}
+
+/** No more pixels than the screen shows: the service sends less and the browser scales less. */
+function wantedWidth() {
+  const shownPx = Math.round(byId("stage").clientWidth * devicePixelRatio);
+  const widths = [320, 480, 640, 960, 1280, 1920];
+  return widths.find((width) => width >= shownPx) ?? 0;
+}
+
+/** @param {number} ms @param {AbortSignal} stop */
+function pause(ms, stop) {
+  return new Promise((resolve) => {
+    const timer = setTimeout(resolve, ms);
+    stop.addEventListener("abort", () => {
+      clearTimeout(timer);
+      resolve(undefined);
+    });
+  });
+}
+
+/** @param {import("./api.js").Picture} picture */
+function draw(picture) {
+  const canvas = /** @type {HTMLCanvasElement} */ (byId("picture"));
+  const { bitmap } = picture;
+  if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
+    canvas.width = bitmap.width;
+    canvas.height = bitmap.height;
+  }
+  canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
+  shown = { sequence: picture.sequence, ageMs: picture.ageMs, at: performance.now(), width: bitmap.width, height: bitmap.height };
+  bitmap.close();
+  canvas.dataset.sequence = String(picture.sequence);
+  times.push(shown.at);
+  byId("stage").classList.remove("old");
+  byId("picture-state").hidden = true;
+}
+
+/** Veils the picture: it is not live, and says why. @param {string} why */
+function explain(why) {
+  byId("stage").classList.add("old");
+  const state = byId("picture-state");
+  state.hidden = false;
+  setText(state, why);
+}
+
+/** Shows what belongs to the picture and is not drawn into it. */
+export function showLive() {
+  const now = performance.now();
+  times = times.filter((time) => now - time < 2000);
+  if (shown) {
+    const ageMs = shown.ageMs + now - shown.at;
+    if (ageMs > 2000) explain(`Not live: this picture is ${duration(ageMs / 1000)} old`);
+    const rate = times.length > 1 ? ((times.length - 1) * 1000) / (times[times.length - 1] - times[0]) : null;
+    setText(byId("frame-facts"),
+      `frame ${shown.sequence} · ${figure(rate, 0, "fps shown")} · ${shown.width} × ${shown.height} px`);
+  }
+  setAttribute(byId("picture"), "aria-label", describe());
+  showCameraChoice();
+}
+
+function describe() {
+  const camera = known.camera && known.cameras.get(known.camera);
+  if (!camera || !shown) return "No picture yet";
+  const seen = (camera.landmarks ?? []).filter((/** @type {any} */ entry) => entry.result === "measured");
+  const names = [...new Set(seen.map((/** @type {any} */ entry) => entry.id))].join(", ");
+  return `Live picture of camera ${camera.id}; ${names ? `measured: ${names}` : "no landmark measured"}`;
+}
+
+/** Offers the layers that the service can draw. */
+export function showLayers() {
+  for (const layer of known.layers) if (!OFF_AT_FIRST.has(layer)) known.layersOn.add(layer);
+  reconcile(byId("layers"), keptLayers, ["legend", ...known.layers], (layer) => {
+    if (layer === "legend") return /** @type {HTMLElement} */ (byId("layers").firstElementChild);
+    const box = make("input");
+    box.type = "checkbox";
+    box.name = layer;
+    box.checked = known.layersOn.has(layer);
+    box.addEventListener("change", () => {
+      if (box.checked) known.layersOn.add(layer);
+      else known.layersOn.delete(layer);
+      restartLive();
+    });
+    const name = LAYER_NAMES[/** @type {keyof typeof LAYER_NAMES} */ (layer)] ?? layer;
+    return make("label", "", box, ` ${name}`);
+  });
+}
+
+function showCameraChoice() {
+  const ids = [...known.cameras.keys()];
+  const choice = byId("cameras");
+  choice.hidden = ids.length < 2;
+  reconcile(choice, keptCameras, ids, (id) => {
+    const button = make("input");
+    button.type = "radio";
+    button.name = "camera";
+    button.checked = id === known.camera;
+    button.addEventListener("change", () => {
+      known.camera = id;
+      shown = null;
+      restartLive();
+    });
+    return make("label", "", button, ` ${id}`);
+  });
+}
+
+document.addEventListener("visibilitychange", restartLive);

@@ -1,0 +1,52 @@
+// The event log: every change of state, with its time, newest first.
+
+import { byId, make, makeState, showState } from "./dom.js";
+import { items } from "./header.js";
+import { known } from "./state.js";
+import { missInWords } from "./words.js";
+
+const MAX_LINES = 200;
+
+/** A landmark's state must last this long to count as a change; a single lost frame is not news. */
+const SETTLE_MS = 500;
+
+/** @typedef {{level: import("./dom.js").Level, words: string}} State */
+/** @type {Map<string, {said: string, now: string, since: number}>} */
+const watched = new Map();
+
+/** Compares what is known now with what was said last. */
+export function watchChanges() {
+  for (const item of items()) watch(item.name, { level: item.level, words: item.words.split(",")[0] }, `${item.name}|${item.level}`, 0);
+  for (const camera of known.cameras.values()) {
+    for (const entry of camera.landmarks ?? []) {
+      const measured = entry.result === "measured";
+      const words = measured ? "measured" : `lost: ${missInWords(entry.result, entry.miss)}`;
+      watch(`${entry.id} #${entry.instance} in ${camera.id}`, { level: measured ? "good" : "bad", words }, entry.result, SETTLE_MS);
+    }
+  }
+}
+
+/** @param {string} what @param {State} state @param {string} mark @param {number} settleMs */
+function watch(what, state, mark, settleMs) {
+  const now = performance.now();
+  const former = watched.get(what);
+  if (!former || former.now !== mark) {
+    watched.set(what, { said: former?.said ?? "", now: mark, since: now });
+    if (settleMs > 0) return;
+  }
+  const current = watched.get(what);
+  if (current && current.said !== mark && now - current.since >= settleMs) {
+    current.said = mark;
+    write(what, state);
+  }
+}
+
+/** @param {string} what @param {State} state */
+function write(what, state) {
+  const time = make("time", "quiet", new Date().toLocaleTimeString(undefined, { hour12: false }));
+  const mark = makeState();
+  showState(mark, state.level, state.words);
+  const log = byId("log");
+  log.prepend(make("li", "", time, " ", make("b", "", what), " ", mark));
+  while (log.children.length > MAX_LINES) log.lastElementChild?.remove();
+}

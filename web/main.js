@@ -1,0 +1,85 @@
+// Starts the page: what is asked when, and what is shown how often.
+
+import { Problem, followEvents, getJson } from "./api.js";
+import { showFleet } from "./fleet.js";
+import { showHeader } from "./header.js";
+import { showLandmarks } from "./landmarks.js";
+import { restartLive, showLayers, showLive } from "./live.js";
+import { watchChanges } from "./log.js";
+import { drawPlots, samplePlots } from "./plots.js";
+import { showRecorder } from "./recorder.js";
+import { known, learnCamera, learnStatus } from "./state.js";
+
+const ASK_STATUS_MS = 1000;
+/** Text is shown this often: faster than this nobody reads. */
+const SHOW_MS = 200;
+
+/** The set whose landmarks are shown, so that they are asked for again when it changes. */
+let landmarksAskedAt = -Infinity;
+
+async function askStatus() {
+  try {
+    learnStatus(await getJson("/api/v1/status"));
+    chooseCamera();
+    if (performance.now() - landmarksAskedAt > 2000) await askLandmarks();
+  } catch {
+    // Silence is what the header shows; there is nothing else to do than to ask again.
+  }
+  setTimeout(askStatus, ASK_STATUS_MS);
+}
+
+/** The browser asks with its entity tag, so an unchanged set costs a 304. */
+async function askLandmarks() {
+  const set = await getJson("/api/v1/landmarks");
+  known.landmarks = set.landmarks ?? [];
+  known.version = set.version ?? null;
+  landmarksAskedAt = performance.now();
+}
+
+async function askFleet() {
+  try {
+    showFleet(await getJson("/api/v1/fleet"));
+  } catch (error) {
+    // A service without a fleet view has nothing to show, now or later.
+    if (error instanceof Problem && error.status === 404) return;
+  }
+  setTimeout(askFleet, 2000);
+}
+
+async function askLayers() {
+  try {
+    known.layers = (await getJson("/api/v1/cameras")).layers ?? [];
+    showLayers();
+    restartLive();
+  } catch {
+    setTimeout(askLayers, ASK_STATUS_MS);
+  }
+}
+
+function chooseCamera() {
+  if (known.camera && known.cameras.has(known.camera)) return;
+  known.camera = known.cameras.keys().next().value ?? null;
+  restartLive();
+}
+
+function show() {
+  showHeader();
+  watchChanges();
+  if (document.hidden) return;
+  showLive();
+  showLandmarks();
+  showRecorder();
+  drawPlots();
+}
+
+followEvents(
+  (camera) => {
+    learnCamera(camera);
+    samplePlots(camera);
+  },
+  (following) => (known.following = following),
+);
+void askStatus();
+void askLayers();
+void askFleet();
+setInterval(show, SHOW_MS);

@@ -1,0 +1,62 @@
+// What is known now, and when it was learnt. Sections read it; only this file and main.js write it.
+
+/**
+ * @typedef {object} Known
+ * @property {any} status last answer of /api/v1/status
+ * @property {number} statusAt performance.now() of it
+ * @property {Map<string, any>} cameras newest entry of each camera, from status or events
+ * @property {Map<string, number>} cameraAt performance.now() of each
+ * @property {any[]} landmarks descriptors in force
+ * @property {{epoch: number, version: number} | null} version of the landmark set
+ * @property {string | null} camera the one shown
+ * @property {string[]} layers that can be drawn
+ * @property {Set<string>} layersOn that are drawn
+ * @property {boolean} following events arrive
+ */
+
+/** @type {Known} */
+export const known = {
+  status: null,
+  statusAt: 0,
+  cameras: new Map(),
+  cameraAt: new Map(),
+  landmarks: [],
+  version: null,
+  camera: null,
+  layers: [],
+  layersOn: new Set(),
+  following: false,
+};
+
+/** @param {any} camera */
+export function learnCamera(camera) {
+  const former = known.cameras.get(camera.id);
+  // An answer that was under way may be older than an event that overtook it.
+  if (former && former.sequence > camera.sequence && former.sequence - camera.sequence < 100) return;
+  known.cameras.set(camera.id, camera);
+  known.cameraAt.set(camera.id, performance.now());
+}
+
+/** @param {any} status */
+export function learnStatus(status) {
+  known.status = status;
+  known.statusAt = performance.now();
+  for (const camera of status.cameras ?? []) learnCamera(camera);
+  for (const id of known.cameras.keys()) {
+    if (!(status.cameras ?? []).some((/** @type {any} */ camera) => camera.id === id)) known.cameras.delete(id);
+  }
+}
+
+/** How old the newest frame of a camera is now, in ms: what the service said, and the time since. @param {any} camera */
+export function frameAgeMs(camera) {
+  if (typeof camera?.age_ms !== "number") return null;
+  return camera.age_ms + performance.now() - (known.cameraAt.get(camera.id) ?? 0);
+}
+
+/** Seconds since the service last answered, or null when it never did. */
+export function silenceS() {
+  return known.statusAt ? (performance.now() - known.statusAt) / 1000 : null;
+}
+
+/** The service counts as lost after this long without an answer. */
+export const LOST_AFTER_S = 3;

@@ -1,0 +1,66 @@
+// Figures and states as words. What is missing is "—", never 0.
+
+export const MISSING = "—";
+
+/** @param {number | null | undefined} value @param {number} digits @param {string} [unit] */
+export function figure(value, digits, unit = "") {
+  if (typeof value !== "number" || !Number.isFinite(value)) return MISSING;
+  return unit ? `${value.toFixed(digits)} ${unit}` : value.toFixed(digits);
+}
+
+/** A duration at the precision a person needs. @param {number | null | undefined} seconds */
+export function duration(seconds) {
+  if (typeof seconds !== "number" || !Number.isFinite(seconds)) return MISSING;
+  if (seconds < 1) return `${Math.round(seconds * 1000)} ms`;
+  if (seconds < 10) return `${seconds.toFixed(1)} s`;
+  if (seconds < 120) return `${Math.round(seconds)} s`;
+  if (seconds < 7200) return `${Math.round(seconds / 60)} min`;
+  return `${Math.round(seconds / 3600)} h`;
+}
+
+/** @param {number | null | undefined} count */
+export function bytes(count) {
+  if (typeof count !== "number" || !Number.isFinite(count)) return MISSING;
+  const units = ["B", "kB", "MB", "GB", "TB"];
+  let step = 0;
+  let value = count;
+  while (value >= 1000 && step < units.length - 1) {
+    value /= 1000;
+    step += 1;
+  }
+  return `${value.toFixed(step === 0 || value >= 100 ? 0 : 1)} ${units[step]}`;
+}
+
+const MISSES = {
+  outside_frame: () => "expected outside the picture",
+  no_colour: (miss) => `no part of the picture has its colours${nearest(miss)}`,
+  too_small: () => "too small to measure",
+  wrong_shape: (miss) => `colour fits, outline does not${fit(miss)}`,
+  outside_gate: (miss) =>
+    `something alike ${figure(miss.innovation_px, 0, "px")} from where it should be: too far to be it`,
+  occluded: (miss) => `covered: ${percent(miss.visible)} of it still seen`,
+  skipped: () => "not looked for: this frame's share of work was used up",
+};
+
+/** Why a landmark was not measured. @param {string} result @param {Record<string, any> | null} [miss] */
+export function missInWords(result, miss) {
+  const words = MISSES[/** @type {keyof typeof MISSES} */ (result)];
+  return words ? words(miss ?? {}) : result.replaceAll("_", " ");
+}
+
+/** @param {Record<string, any>} miss */
+function nearest(miss) {
+  if (typeof miss.excess !== "number") return "";
+  return `; the nearest is ${miss.excess.toFixed(1)} tolerances off`;
+}
+
+/** @param {Record<string, any>} miss */
+function fit(miss) {
+  const score = miss.shape_score ?? miss.score;
+  return typeof score === "number" ? ` (fit ${score.toFixed(2)})` : "";
+}
+
+/** @param {number | null | undefined} part */
+export function percent(part) {
+  return typeof part === "number" ? `${Math.round(part * 100)} %` : MISSING;
+}
