@@ -11,17 +11,28 @@
 //! right, y down, so the centre of the first pixel is (0.5, 0.5); colours are 8-bit levels in the order R, G, B;
 //! variances are the population's.
 
+mod adaptive;
 pub mod bitmask;
 pub mod components;
-mod adaptive;
+pub mod doubled_grid;
 pub mod frame;
 pub mod gate;
 pub mod geometry;
+pub mod hough;
 pub mod landmark;
 pub mod learn;
+pub mod mask;
+pub mod measure;
 pub mod outcome;
+pub mod outline;
 pub mod predict;
 pub mod probe;
+#[doc(hidden)]
+pub mod reference;
+pub mod register;
+pub mod score;
+pub mod shape;
+pub mod statistics;
 pub mod timestamp;
 
 pub use bitmask::{BitMask, Run};
@@ -32,4 +43,5 @@ pub use landmark::{ColorStats, Digest, Landmark, LandmarkSet, SetVersion, ShapeC
 pub use learn::{LearnError, LearnOptions, learn};
 pub use outcome::{Gate, LandmarkOutcome, Miss, Outcome, Prediction, Sighting};
 pub use probe::{NoProbe, Stage, StageProbe};
+pub use register::{Request, ShapeVeto, Workspace, register};
 pub use timestamp::Timestamp;

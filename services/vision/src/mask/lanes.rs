@@ -1,0 +1,88 @@
+//! Which vector instructions the mask is computed with.
+//!
+//! There is one source for all of them: plain element-by-element loops, compiled once for each instruction set and
+//! chosen at run time. So every variant gives the same integers by construction, and the tests compare them bit for
+//! bit all the same. On other processors than x86-64 the compiler's baseline is used, on 64-bit ARM that is NEON.
+#![allow(unsafe_code, reason = "calling a function compiled for instructions that were detected")]
+
+use crate::bitmask::BitMask;
+
+use super::exact::{self, Area, Question, Scratch};
+use super::lane::Precision;
+
+/// A set of vector instructions that this processor has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lanes(Set);
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Set {
+    Baseline,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl Default for Lanes {
+    /// The widest.
+    fn default() -> Self {
+        Self::available().next().unwrap_or(Self(Set::Baseline))
+    }
+}
+
+impl Lanes {
+    /// All that this processor has, the widest first.
+    pub fn available() -> impl Iterator<Item = Self> {
+        let sets = [
+            #[cfg(target_arch = "x86_64")]
+            (is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512vl"), Set::Avx512),
+            #[cfg(target_arch = "x86_64")]
+            (is_x86_feature_detected!("avx2"), Set::Avx2),
+            (true, Set::Baseline),
+        ];
+        sets.into_iter().filter(|&(present, _)| present).map(|(_, set)| Self(set))
+    }
+
+    /// The name in figures and reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self.0 {
+            Set::Baseline => "baseline",
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx2 => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx512 => "avx512",
+        }
+    }
+
+    /// [`exact::test`] with these instructions.
+    pub(super) fn test_exactly<P: Precision>(
+        self,
+        question: &Question<'_>,
+        area: &Area,
+        scratch: &mut Scratch<P>,
+        mask: &mut BitMask,
+    ) {
+        match self.0 {
+            Set::Baseline => exact::test(question, area, scratch, mask),
+            // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx2 => unsafe { exact_avx2(question, area, scratch, mask) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx512 => unsafe { exact_avx512(question, area, scratch, mask) },
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2")]
+fn exact_avx2<P: Precision>(q: &Question<'_>, area: &Area, scratch: &mut Scratch<P>, mask: &mut BitMask) {
+    exact::test(q, area, scratch, mask);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512dq,bmi1,bmi2")]
+fn exact_avx512<P: Precision>(q: &Question<'_>, area: &Area, scratch: &mut Scratch<P>, mask: &mut BitMask) {
+    exact::test(q, area, scratch, mask);
+}

@@ -1,0 +1,157 @@
+//! Registration of one landmark in one frame: the 14 steps of thesis 4.0.3, with fixed statistics and tolerances.
+
+use crate::bitmask::BitMask;
+use crate::components::{Component, Components};
+use crate::doubled_grid::DoubledGrid;
+use crate::frame::Frame;
+use crate::geometry::RectPx;
+use crate::hough::Hough;
+use crate::landmark::Landmark;
+use crate::mask::Masker;
+use crate::measure::{self, Evidence};
+use crate::outcome::{Miss, Prediction, Sighting};
+use crate::outline::Outline;
+use crate::probe::{Stage, StageProbe};
+use crate::score;
+use crate::shape;
+
+/// Components looked at closely, the largest first: the bound on the work that one landmark can cause.
+const MOST_CANDIDATES: usize = 64;
+
+/// What is asked for beside the landmark itself.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Request<'a> {
+    /// The part of the frame that is searched; `None` for all of it.
+    pub region: Option<RectPx>,
+    /// Whether an outline of another shape counts as a miss.
+    pub shape_veto: ShapeVeto,
+    /// Where and how large the object is expected; decides between candidates, excludes none.
+    pub prediction: Option<&'a Prediction>,
+}
+
+/// Whether an outline that does not fit the landmark's shape class rules a candidate out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ShapeVeto {
+    /// It only lowers the score.
+    #[default]
+    Off,
+    /// It is a miss, where the object is large enough to show a shape.
+    Required,
+}
+
+impl ShapeVeto {
+    /// Whether a candidate of this fit is ruled out.
+    #[must_use]
+    pub fn rules_out(self, shape_score: Option<f32>) -> bool {
+        self == Self::Required && shape_score.is_some_and(|fit| fit < shape::SMALLEST_FIT)
+    }
+}
+
+/// Memory that registration keeps from frame to frame.
+#[derive(Default)]
+pub struct Workspace {
+    masker: Masker,
+    mask: BitMask,
+    components: Components,
+    candidates: Vec<Component>,
+    outline: Outline,
+    hough: Hough,
+}
+
+impl Workspace {
+    /// One that computes masks with `masker`.
+    #[must_use]
+    pub fn with_masker(masker: Masker) -> Self {
+        Self { masker, ..Self::default() }
+    }
+
+    /// The mask of the last registration, on the doubled grid.
+    #[must_use]
+    pub fn mask(&self) -> &BitMask {
+        &self.mask
+    }
+}
+
+/// Finds all plausible instances of `landmark` in `frame`, best first; never an empty list.
+///
+/// # Errors
+/// The reason why there is none: [`Miss::OutsideFrame`] when the region lies outside the frame, [`Miss::TooSmall`] when
+/// no window fits into it, [`Miss::NoColour`] when no window matches, [`Miss::WrongShape`] when the veto was asked for
+/// and struck out every candidate.
+pub fn register<P: StageProbe>(
+    frame: &Frame,
+    landmark: &Landmark,
+    request: &Request<'_>,
+    workspace: &mut Workspace,
+    probe: &mut P,
+) -> Result<Vec<Sighting>, Miss> {
+    let grid = grid(frame, landmark, request)?;
+    workspace.masker.find(frame, &grid, landmark, &mut workspace.mask, probe);
+    staged(probe, Stage::Components, || workspace.components.find(&workspace.mask));
+    choose_candidates(&workspace.components, &mut workspace.candidates);
+    let mut sightings = Vec::with_capacity(workspace.candidates.len());
+    let mut best_refused: Option<f32> = None;
+    for at in 0..workspace.candidates.len() {
+        let sighting = examine(frame, landmark, &grid, request, workspace, at, probe);
+        if request.shape_veto.rules_out(sighting.shape_score) {
+            best_refused = [best_refused, sighting.shape_score].into_iter().flatten().reduce(f32::max);
+        } else {
+            sightings.push(sighting);
+        }
+    }
+    score::rank(&mut sightings);
+    match best_refused {
+        _ if !sightings.is_empty() => Ok(sightings),
+        Some(score) => Err(Miss::WrongShape { score }),
+        None => Err(Miss::NoColour { best: None }),
+    }
+}
+
+/// The windows to look at.
+fn grid(frame: &Frame, landmark: &Landmark, request: &Request<'_>) -> Result<DoubledGrid, Miss> {
+    let whole = RectPx::whole(frame.size());
+    let region = match request.region {
+        Some(region) if whole.width > 0 && whole.height > 0 => {
+            region.clipped_to(frame.size()).ok_or(Miss::OutsideFrame)?
+        }
+        _ => whole,
+    };
+    DoubledGrid::new(region, landmark.window_px).ok_or(Miss::TooSmall)
+}
+
+/// The largest components, the largest first.
+fn choose_candidates(components: &Components, candidates: &mut Vec<Component>) {
+    candidates.clear();
+    candidates.extend_from_slice(components.list());
+    candidates.sort_by_key(|component| std::cmp::Reverse(component.pixels));
+    candidates.truncate(MOST_CANDIDATES);
+}
+
+/// Outline, Hough, shape and measure of one candidate.
+fn examine<P: StageProbe>(
+    frame: &Frame,
+    landmark: &Landmark,
+    grid: &DoubledGrid,
+    request: &Request<'_>,
+    workspace: &mut Workspace,
+    at: usize,
+    probe: &mut P,
+) -> Sighting {
+    let Workspace { mask, components, candidates, outline, hough, .. } = workspace;
+    let component = &candidates[at];
+    let runs = components.runs(component);
+    staged(probe, Stage::Outline, || outline.trace(mask, runs[0]));
+    let segments = staged(probe, Stage::Hough, || hough.segments(outline));
+    let shape_score = staged(probe, Stage::Shape, || shape::fit(landmark.shape, outline, segments));
+    let evidence = Evidence { mask, component, runs, outline, segments, shape_score };
+    let mut sighting = staged(probe, Stage::Measure, || measure::sighting(frame, grid, &evidence));
+    sighting.score = score::score(&sighting, landmark.window_px, request.prediction);
+    sighting
+}
+
+fn staged<P: StageProbe, T>(probe: &mut P, stage: Stage, work: impl FnOnce() -> T) -> T {
+    probe.begin(stage);
+    let result = work();
+    probe.end(stage);
+    result
+}
