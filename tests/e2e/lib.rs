@@ -1,1 +1,34 @@
-//! The end-to-end tests live in `main.rs`.
+//! Driving the real binary: start it, read what it says, ask its web face, end it.
+//!
+//! Nothing here sleeps: waiting is for a line, an event, an exit, each with a deadline that only a failure reaches.
+
+pub mod face;
+pub mod program;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// When a wait is given up. Far beyond what anything takes, so that a busy machine does not fail a test.
+pub const DEADLINE: Duration = Duration::from_secs(60);
+
+/// The root of the repository.
+#[must_use]
+pub fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or_else(|| Path::new("/"))
+}
+
+/// The binary under test: `WAYMARK_BIN`, or the one built beside this test.
+///
+/// # Panics
+/// When there is none.
+#[must_use]
+pub fn waymark() -> PathBuf {
+    let built = || Some(std::env::current_exe().ok()?.parent()?.parent()?.join("waymark"));
+    let path = std::env::var_os("WAYMARK_BIN").map(PathBuf::from).or_else(built).unwrap_or_default();
+    assert!(
+        path.is_file(),
+        "no binary at {}: run `cargo build -p waymark`, or set WAYMARK_BIN",
+        path.display()
+    );
+    path
+}

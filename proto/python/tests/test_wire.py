@@ -1,6 +1,5 @@
 """Layouts that other programs rely on."""
 
-
 import pytest
 from examples import make_landmark
 

@@ -1,0 +1,83 @@
+//! The web face of a running vehicle, as a client sees it.
+
+use std::io::{BufRead, BufReader};
+use std::time::Instant;
+
+use serde_json::Value;
+use ureq::{Agent, Body, http::Response};
+
+use crate::DEADLINE;
+
+/// A vehicle's address.
+#[derive(Clone, Debug)]
+pub struct Face {
+    root: String,
+    agent: Agent,
+}
+
+/// One answer.
+#[derive(Debug)]
+pub struct Answer {
+    /// HTTP status.
+    pub status: u16,
+    /// Media type.
+    pub media_type: String,
+    /// Everything after the headers.
+    pub body: Vec<u8>,
+}
+
+impl Face {
+    /// The face at `root`, as in `http://127.0.0.1:8080`.
+    #[must_use]
+    pub fn at(root: &str) -> Self {
+        let config =
+            Agent::config_builder().http_status_as_error(false).timeout_global(Some(DEADLINE)).build();
+        Self { root: root.trim_end_matches('/').to_owned(), agent: config.into() }
+    }
+
+    /// Asks for a path.
+    ///
+    /// # Panics
+    /// When nobody answers.
+    #[must_use]
+    pub fn get(&self, path: &str) -> Answer {
+        let mut response = self.open(path);
+        let media_type = response.body().mime_type().unwrap_or_default().to_owned();
+        let body = response.body_mut().read_to_vec().unwrap_or_else(|error| panic!("GET {path}: {error}"));
+        Answer { status: response.status().as_u16(), media_type, body }
+    }
+
+    /// Asks for a JSON document.
+    ///
+    /// # Panics
+    /// When the answer is none, or an error.
+    #[must_use]
+    pub fn json(&self, path: &str) -> Value {
+        let answer = self.get(path);
+        assert_eq!(answer.status, 200, "GET {path}: {}", String::from_utf8_lossy(&answer.body));
+        serde_json::from_slice(&answer.body).unwrap_or_else(|error| panic!("GET {path}: {error}"))
+    }
+
+    /// Asks for a document again with every event of the vehicle until it satisfies `wanted`.
+    ///
+    /// # Panics
+    /// When it never does.
+    pub fn json_once(&self, path: &str, wanted: impl Fn(&Value) -> bool) -> Value {
+        let deadline = Instant::now() + DEADLINE;
+        let mut document = self.json(path);
+        let mut events = BufReader::new(self.open("/api/v1/events").into_body().into_reader()).lines();
+        while !wanted(&document) {
+            assert!(Instant::now() < deadline, "GET {path} stays at {document:#}");
+            let event = events.next().unwrap_or_else(|| panic!("events ended; GET {path} was {document:#}"));
+            if event.unwrap_or_else(|error| panic!("events: {error}")).is_empty() {
+                document = self.json(path);
+            }
+        }
+        document
+    }
+
+    fn open(&self, path: &str) -> Response<Body> {
+        let asked = self.agent.get(format!("{}{path}", self.root)).call();
+        asked.unwrap_or_else(|error| panic!("GET {}{path}: {error}", self.root))
+    }
+}
