@@ -1,3 +1,17 @@
 //! What real cameras need beyond the fixed statistics of thesis 4.0.3.
+//!
+//! A search marks the pixels that may show the landmark under the light of the moment ([`likeness`]), takes connected
+//! ones as seeds, tells object from background pixel by pixel around each ([`segment`]), measures with soft edges
+//! ([`soft_edge`]) and scores what came out ([`choose`]). Where to search and what to believe is for `follow` to say.
 
+mod candidate;
+pub(crate) mod choose;
+pub(crate) mod likeness;
+pub(crate) mod noise;
 pub(crate) mod palette;
+mod patch;
+mod segment;
+mod soft_edge;
+
+pub(crate) use candidate::{Candidate, Search, candidates};
+pub(crate) use likeness::Likeness;

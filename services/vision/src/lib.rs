@@ -11,10 +11,11 @@
 //! right, y down, so the centre of the first pixel is (0.5, 0.5); colours are 8-bit levels in the order R, G, B;
 //! variances are the population's.
 
-mod adaptive;
 pub mod bitmask;
 pub mod components;
+mod adaptive;
 pub mod doubled_grid;
+pub mod follow;
 pub mod frame;
 pub mod gate;
 pub mod geometry;
@@ -37,11 +38,12 @@ pub mod timestamp;
 
 pub use bitmask::{BitMask, Run};
 pub use components::{Component, Components};
+pub use follow::{Follow, FollowOptions, FollowState, FrameStamp, Mode};
 pub use frame::Frame;
 pub use geometry::{PointPx, RectPx, Segment, SizePx};
 pub use landmark::{ColorStats, Digest, Landmark, LandmarkSet, SetVersion, ShapeClass, WindowPx};
 pub use learn::{LearnError, LearnOptions, learn};
 pub use outcome::{Gate, LandmarkOutcome, Miss, Outcome, Prediction, Sighting};
-pub use probe::{NoProbe, Stage, StageProbe};
 pub use register::{Request, ShapeVeto, Workspace, register};
+pub use probe::{NoProbe, Stage, StageProbe};
 pub use timestamp::Timestamp;

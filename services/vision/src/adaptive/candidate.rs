@@ -1,0 +1,158 @@
+//! Objects that may be the landmark, in a part of the frame.
+
+use super::choose::{self, Form};
+use super::likeness::Likeness;
+use super::patch::Patch;
+use super::segment;
+use super::soft_edge;
+use crate::bitmask::BitMask;
+use crate::components::{Component, Components};
+use crate::frame::Frame;
+use crate::geometry::{PointPx, RectPx};
+use crate::landmark::{ColorStats, Landmark, ShapeClass};
+
+/// Fewer like pixels than this are no seed.
+const LEAST_SEED_PX: u64 = 5;
+/// Parts of a sign that lettering separates lie within this many sizes of its largest part.
+const PARTS_REACH: f32 = 0.3;
+
+/// What is searched for and where.
+pub(crate) struct Search<'a> {
+    pub(crate) frame: &'a Frame,
+    pub(crate) region: RectPx,
+    pub(crate) landmark: &'a Landmark,
+    pub(crate) likeness: &'a Likeness,
+    /// The gain that is most likely.
+    pub(crate) gain: f32,
+    pub(crate) noise_variance: [f32; 3],
+    /// At most this many seeds are looked at closely.
+    pub(crate) limit: usize,
+}
+
+/// One object that may be the landmark.
+#[derive(Clone, Debug)]
+pub(crate) struct Candidate {
+    pub(crate) object: Patch,
+    pub(crate) centroid: PointPx,
+    pub(crate) area_px2: f32,
+    /// Brightness over the descriptor's.
+    pub(crate) gain: f32,
+    /// The six statistics of its best window.
+    pub(crate) observed: ColorStats,
+    /// Side of that window on the doubled grid.
+    pub(crate) window_px: u16,
+    /// Whether the picture's border cuts it.
+    pub(crate) cut: bool,
+    /// How much it looks like the landmark, 0..1.
+    pub(crate) score: f32,
+}
+
+impl Candidate {
+    /// Whether `point` lies on the object or within its bounding square.
+    pub(crate) fn covers(&self, point: PointPx) -> bool {
+        let reach = 0.5 * self.area_px2.sqrt();
+        (self.centroid.x - point.x).abs() <= reach && (self.centroid.y - point.y).abs() <= reach
+    }
+}
+
+/// The objects in the searched region that look like the landmark, best first.
+pub(crate) fn candidates(search: &Search<'_>) -> Vec<Candidate> {
+    let mask = like_pixels(search);
+    let mut components = Components::default();
+    components.find(&mask);
+    let mut seeds: Vec<&Component> = components.list().iter().filter(|c| c.pixels >= LEAST_SEED_PX).collect();
+    seeds.sort_by_key(|component| std::cmp::Reverse(component.pixels));
+    let mut found: Vec<Candidate> = Vec::new();
+    for seed in seeds.iter().take(search.limit) {
+        let (x, y) = seed.mean_pixel();
+        let centre = PointPx::new(
+            (f64::from(search.region.x) + x + 0.5) as f32,
+            (f64::from(search.region.y) + y + 0.5) as f32,
+        );
+        if found.iter().any(|known| known.covers(centre)) {
+            continue;
+        }
+        let seed = seed_patch(search, &components, seed, &seeds);
+        found.extend(candidate(search, &seed));
+    }
+    found.sort_by(|a, b| b.score.total_cmp(&a.score));
+    without_overlaps(found)
+}
+
+/// The pixels of the region that may be the landmark's.
+fn like_pixels(search: &Search<'_>) -> BitMask {
+    let region = search.region;
+    let mut mask = BitMask::new(region.width, region.height);
+    for v in 0..region.height {
+        let row = &search.frame.row(region.y + v)[3 * region.x as usize..][..3 * region.width as usize];
+        for (word, pixels) in row.chunks(3 * 64).enumerate() {
+            let mut bits = 0;
+            for (at, pixel) in pixels.chunks_exact(3).enumerate() {
+                bits |= u64::from(search.likeness.matches([pixel[0], pixel[1], pixel[2]])) << at;
+            }
+            if bits != 0 {
+                mask.or_word(v, word as u32, bits);
+            }
+        }
+    }
+    mask
+}
+
+/// A component with room around it; of a sign also the parts that lettering separates from it.
+fn seed_patch(search: &Search<'_>, components: &Components, seed: &Component, all: &[&Component]) -> Patch {
+    let reach = if is_sign(search.landmark.shape) {
+        (PARTS_REACH * (seed.width().max(seed.height())) as f32) as u32
+    } else {
+        0
+    };
+    let belongs = |other: &&&Component| {
+        let apart = |a: (u32, u32), b: (u32, u32)| b.0.saturating_sub(a.1).max(a.0.saturating_sub(b.1));
+        let dx = apart((seed.x_start, seed.x_end), (other.x_start, other.x_end));
+        let dy = apart((seed.y_start, seed.y_end), (other.y_start, other.y_end));
+        reach > 0 && dx.max(dy) <= reach && 20 * other.pixels >= seed.pixels && other.pixels <= seed.pixels
+    };
+    let mut bounds = (seed.x_start, seed.y_start, seed.x_end, seed.y_end);
+    let parts: Vec<&&Component> = all.iter().filter(belongs).collect();
+    for part in &parts {
+        bounds = (
+            bounds.0.min(part.x_start),
+            bounds.1.min(part.y_start),
+            bounds.2.max(part.x_end),
+            bounds.3.max(part.y_end),
+        );
+    }
+    let (x, y) = (search.region.x + bounds.0, search.region.y + bounds.1);
+    let bounds = RectPx { x, y, width: bounds.2 - bounds.0, height: bounds.3 - bounds.1 };
+    let rect = segment::surroundings(bounds, search.frame);
+    let mut runs = components.runs(seed).to_vec();
+    for part in parts {
+        runs.extend_from_slice(components.runs(part));
+    }
+    Patch::from_runs(rect, search.region, &runs)
+}
+
+fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
+    let object = segment::object(search.frame, seed, search.likeness)?;
+    let (centroid, area_px2) = soft_edge::centroid_and_area(search.frame, &object)?;
+    let form = Form::of(&object);
+    let (window_px, observed) = choose::best_window(search, &object, area_px2)?;
+    let score = choose::score(search, &object, &form, area_px2, &observed);
+    let cut = object.touches_border(search.frame.width(), search.frame.height());
+    let gain = search.likeness.nearest(observed.mean).gain;
+    Some(Candidate { object, centroid, area_px2, gain, observed, window_px, cut, score })
+}
+
+fn without_overlaps(found: Vec<Candidate>) -> Vec<Candidate> {
+    let mut kept: Vec<Candidate> = Vec::new();
+    for candidate in found {
+        if !kept.iter().any(|better| better.covers(candidate.centroid) || candidate.covers(better.centroid)) {
+            kept.push(candidate);
+        }
+    }
+    kept
+}
+
+/// Whether lettering and a border belong to objects of this shape.
+fn is_sign(shape: ShapeClass) -> bool {
+    matches!(shape, ShapeClass::Octagon | ShapeClass::Rectangle | ShapeClass::Triangle | ShapeClass::Circle)
+}

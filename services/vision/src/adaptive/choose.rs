@@ -1,0 +1,140 @@
+//! How much an object looks like the landmark: colour, texture, light, size, form and what surrounds it.
+
+use super::candidate::Search;
+use super::patch::{Patch, polygon_area_and_centroid};
+use crate::landmark::{ColorStats, ShapeClass};
+
+/// An object of this area is as likely a speck as a landmark, px².
+const SPECK_AREA_PX2: f32 = 24.0;
+/// The largest window, samples of the doubled grid.
+const LARGEST_WINDOW_2X: i32 = 48;
+
+/// The form of an object.
+pub(crate) struct Form {
+    /// Area over the area of the convex hull, 0..1.
+    pub(crate) solidity: f32,
+    /// Long over short axis of the ellipse of the same moments, at least 1.
+    pub(crate) elongation: f32,
+}
+
+impl Form {
+    pub(crate) fn of(object: &Patch) -> Self {
+        let area = object.count() as f32;
+        let hull_area = polygon_area_and_centroid(&object.hull()).map_or(area, |(hull_area, _)| hull_area);
+        Self { solidity: (area / hull_area.max(1.0)).min(1.0), elongation: elongation(object) }
+    }
+
+    /// How well it suits a shape class whatever the details of its outline, 0..1.
+    fn suits(&self, shape: ShapeClass) -> f32 {
+        let (longest, least_solid) = match shape {
+            ShapeClass::Octagon | ShapeClass::Circle => (1.35, 0.82),
+            ShapeClass::Block => (1.7, 0.8),
+            ShapeClass::Triangle => (1.7, 0.8),
+            ShapeClass::Rectangle => (6.0, 0.8),
+            ShapeClass::Any => (4.0, 0.6),
+        };
+        let too_long = (self.elongation / longest).max(1.0) - 1.0;
+        let too_ragged = (least_solid - self.solidity).max(0.0);
+        (-(too_long / 0.25).powi(2) - (too_ragged / 0.15).powi(2)).exp()
+    }
+}
+
+fn elongation(object: &Patch) -> f32 {
+    let (mut n, mut sx, mut sy, mut xx, mut xy, mut yy) = (0.0_f64, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for (x, y) in object.set_places() {
+        let (x, y) = (f64::from(x), f64::from(y));
+        n += 1.0;
+        sx += x;
+        sy += y;
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    // One twelfth is the second moment of a pixel itself.
+    let (xx, yy, xy) = (
+        xx / n - (sx / n).powi(2) + 1.0 / 12.0,
+        yy / n - (sy / n).powi(2) + 1.0 / 12.0,
+        xy / n - sx * sy / n / n,
+    );
+    let (half, root) = ((xx + yy) / 2.0, (((xx - yy) / 2.0).powi(2) + xy * xy).sqrt());
+    ((half + root) / (half - root).max(1e-3)).sqrt() as f32
+}
+
+/// The window on the object that is nearest to the descriptor, and its statistics. Its side follows the object's.
+pub(crate) fn best_window(search: &Search<'_>, object: &Patch, area_px2: f32) -> Option<(u16, ColorStats)> {
+    let side = ((0.42 * area_px2.sqrt()) as i32).clamp(1, LARGEST_WINDOW_2X / 2);
+    let step = (side / 2).max(1);
+    let mut best: Option<(f32, ColorStats)> = None;
+    for y in (0..object.height()).step_by(step as usize) {
+        for x in (0..object.width()).step_by(step as usize) {
+            let corners = [(0, 0), (side - 1, 0), (0, side - 1), (side - 1, side - 1)];
+            if !corners.iter().all(|(u, v)| object.get(x + u, y + v)) {
+                continue;
+            }
+            let stats = window_stats(search, object, (x, y), side);
+            let excess = search.likeness.nearest(stats.mean).excess + 0.01 * stats.variance[0].sqrt();
+            if best.as_ref().is_none_or(|(least, _)| excess < *least) {
+                best = Some((excess, stats));
+            }
+        }
+    }
+    best.map(|(_, stats)| (2 * side as u16, stats))
+}
+
+fn window_stats(search: &Search<'_>, object: &Patch, (x, y): (i32, i32), side: i32) -> ColorStats {
+    let (mut sum, mut squares) = ([0.0_f32; 3], [0.0_f32; 3]);
+    for v in y..y + side {
+        for u in x..x + side {
+            let pixel = search.frame.pixel(object.rect.x + u as u32, object.rect.y + v as u32);
+            for c in 0..3 {
+                let level = f32::from(pixel[c]);
+                sum[c] += level;
+                squares[c] += level * level;
+            }
+        }
+    }
+    let n = (side * side) as f32;
+    let mean = sum.map(|s| s / n);
+    ColorStats { mean, variance: std::array::from_fn(|c| (squares[c] / n - mean[c] * mean[c]).max(0.0)) }
+}
+
+/// How much the object looks like the landmark, 0..1.
+pub(crate) fn score(
+    search: &Search<'_>,
+    object: &Patch,
+    form: &Form,
+    area_px2: f32,
+    observed: &ColorStats,
+) -> f32 {
+    let color = search.likeness.nearest(observed.mean);
+    let off = |value: f32, sigma: f32| (-0.5 * (value / sigma).powi(2)).exp();
+    let light = off((color.gain / search.gain).max(1e-3).ln(), 0.25);
+    let hue = off(color.excess, 0.7);
+    let size = area_px2 / (area_px2 + SPECK_AREA_PX2);
+    let texture = off(variance_excess(search, observed), 3.0);
+    hue * light * size * texture * form.suits(search.landmark.shape) * isolation(search, object)
+}
+
+/// By how many tolerances the observed variance exceeds the descriptor's, camera noise taken out.
+fn variance_excess(search: &Search<'_>, observed: &ColorStats) -> f32 {
+    let over = |shade: &ColorStats, c: usize| {
+        let tolerance = search.landmark.tolerance.variance[c].max(50.0);
+        ((observed.variance[c] - search.noise_variance[c] - shade.variance[c]).max(0.0) / tolerance - 1.0)
+            .max(0.0)
+    };
+    let worst = |shade: &ColorStats| (0..3).map(|c| over(shade, c)).fold(0.0, f32::max);
+    search.landmark.shades.iter().map(worst).fold(f32::MAX, f32::min)
+}
+
+/// The part of a ring around the object that does not look like the landmark: low inside something larger.
+fn isolation(search: &Search<'_>, object: &Patch) -> f32 {
+    let inner = object.dilated(2);
+    let outer = inner.dilated(2);
+    let (mut like, mut all) = (0.0_f32, 0.0_f32);
+    for (x, y) in outer.set_places().filter(|&(x, y)| !inner.get(x, y)) {
+        let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
+        like += if search.likeness.matches(pixel) { 1.0 } else { 0.0 };
+        all += 1.0;
+    }
+    if all == 0.0 { 1.0 } else { 1.0 - like / all }
+}

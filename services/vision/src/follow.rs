@@ -1,0 +1,205 @@
+//! Following landmarks from frame to frame: predict → gate → register → update, a state machine without a clock.
+//!
+//! The same frames with the same stamps, options and landmark sets give the same outcomes, and a [`FollowState`]
+//! taken between two frames continues exactly where it was taken.
+
+mod budget;
+mod faithful;
+mod pursue;
+mod report;
+mod state;
+
+pub use state::{FollowState, LandmarkState, Track};
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::adaptive::noise;
+use crate::frame::Frame;
+use crate::landmark::{Landmark, LandmarkSet};
+use crate::outcome::{LandmarkOutcome, Outcome};
+use crate::predict::PredictionMethod;
+use crate::probe::StageProbe;
+use crate::register::{ShapeVeto, Workspace};
+use crate::timestamp::Timestamp;
+use budget::Budget;
+
+/// How a landmark is registered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// The thesis as settled: fixed statistics and tolerances, the whole frame, no gate.
+    Faithful,
+    /// With gain, noise, scale, gate and soft edges followed.
+    #[default]
+    Adaptive,
+}
+
+impl Mode {
+    /// The name used on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Faithful => "faithful",
+            Self::Adaptive => "adaptive",
+        }
+    }
+}
+
+/// How to follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FollowOptions {
+    /// How a landmark is registered.
+    pub mode: Mode,
+    /// How the next place is told from the earlier ones.
+    pub prediction: PredictionMethod,
+    /// What a misfit of the shape means.
+    pub shape_veto: ShapeVeto,
+    /// At most this many objects are followed for one landmark.
+    pub max_instances: u32,
+    /// At most this many pixels are searched in one frame, counted once for every landmark; what is left is reported
+    /// as skipped and comes first in the next frame.
+    pub budget_px: u64,
+}
+
+impl Default for FollowOptions {
+    fn default() -> Self {
+        Self {
+            mode: Mode::default(),
+            prediction: PredictionMethod::default(),
+            shape_veto: ShapeVeto::default(),
+            max_instances: 32,
+            budget_px: 64 * 1280 * 720,
+        }
+    }
+}
+
+/// Which frame it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameStamp {
+    /// Its number in its stream.
+    pub sequence: u64,
+    /// When it was captured.
+    pub captured_at: Timestamp,
+}
+
+/// What all landmarks of a frame share.
+struct Scene<'a> {
+    frame: &'a Frame,
+    captured_at: Timestamp,
+    noise_variance: [f32; 3],
+    options: FollowOptions,
+}
+
+/// Follows all landmarks of a set through the frames of one camera.
+pub struct Follow {
+    options: FollowOptions,
+    set: LandmarkSet,
+    state: FollowState,
+    /// Memory only: no outcome depends on what earlier frames left in it.
+    workspace: Workspace,
+}
+
+impl fmt::Debug for Follow {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { options, set, state, workspace: _ } = self;
+        f.debug_struct("Follow")
+            .field("options", options)
+            .field("set", set)
+            .field("state", state)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Follow {
+    /// A follower that has seen nothing yet.
+    #[must_use]
+    pub fn new(options: FollowOptions, set: LandmarkSet) -> Self {
+        Self::restore(options, set, FollowState::default())
+    }
+
+    /// A follower that continues from `state`. Landmarks that are not the same in `set` start anew.
+    #[must_use]
+    pub fn restore(options: FollowOptions, set: LandmarkSet, state: FollowState) -> Self {
+        let mut follow =
+            Self { options, set: LandmarkSet::default(), state, workspace: Workspace::default() };
+        follow.set_landmarks(set);
+        follow
+    }
+
+    /// Changes what is looked for. Landmarks with the same id and digest keep their tracks.
+    pub fn set_landmarks(&mut self, set: LandmarkSet) {
+        let mut old = std::mem::take(&mut self.state.landmarks);
+        let known = |landmark: &Arc<Landmark>| {
+            let same = |state: &LandmarkState| state.id == landmark.id && state.digest == landmark.digest;
+            match old.iter().position(same) {
+                Some(at) => old.swap_remove(at),
+                None => LandmarkState::new(landmark),
+            }
+        };
+        self.state.landmarks = set.landmarks.iter().map(known).collect();
+        self.set = set;
+    }
+
+    /// What is looked for.
+    #[must_use]
+    pub fn landmarks(&self) -> &LandmarkSet {
+        &self.set
+    }
+
+    /// How it follows.
+    #[must_use]
+    pub fn options(&self) -> &FollowOptions {
+        &self.options
+    }
+
+    /// All that later frames depend on.
+    #[must_use]
+    pub fn state(&self) -> FollowState {
+        self.state.clone()
+    }
+
+    /// Registers every landmark in `frame`.
+    pub fn on_frame<P: StageProbe>(&mut self, frame: &Frame, stamp: FrameStamp, probe: &mut P) -> Outcome {
+        self.state.noise_variance = noise::variance(frame);
+        let scene = Scene {
+            frame,
+            captured_at: stamp.captured_at,
+            noise_variance: self.state.noise_variance,
+            options: self.options,
+        };
+        let landmarks = self.register_all(&scene, probe);
+        self.state.last = Some(stamp);
+        Outcome {
+            sequence: stamp.sequence,
+            captured_at: stamp.captured_at,
+            frame_size: frame.size(),
+            set_version: self.set.version,
+            landmarks,
+        }
+    }
+
+    /// Every landmark in turn, beginning where the last frame's budget ended; the outcomes in the order of the set.
+    fn register_all<P: StageProbe>(&mut self, scene: &Scene<'_>, probe: &mut P) -> Vec<LandmarkOutcome> {
+        let count = self.set.landmarks.len();
+        let mut budget = Budget::new(self.options.budget_px);
+        let mut outcomes: Vec<Vec<LandmarkOutcome>> = vec![Vec::new(); count];
+        let first = self.state.turn.min(count.saturating_sub(1));
+        let mut next_turn = 0;
+        for at in (first..count).chain(0..first) {
+            let (landmark, state) = (&self.set.landmarks[at], &mut self.state.landmarks[at]);
+            outcomes[at] = if budget.is_spent() {
+                pursue::skipped(landmark, state, scene)
+            } else {
+                next_turn = (at + 1) % count;
+                match scene.options.mode {
+                    Mode::Faithful => {
+                        faithful::landmark(scene, landmark, state, &mut budget, &mut self.workspace, probe)
+                    }
+                    Mode::Adaptive => pursue::landmark(scene, landmark, state, &mut budget, probe),
+                }
+            };
+        }
+        self.state.turn = next_turn;
+        outcomes.into_iter().flatten().collect()
+    }
+}

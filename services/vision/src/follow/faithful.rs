@@ -1,0 +1,95 @@
+//! One landmark in one frame as the thesis does it: the whole frame, fixed statistics, no gate. What was seen before
+//! only numbers the instances and is reported as the prior.
+
+use super::Scene;
+use super::budget::Budget;
+use super::report;
+use super::state::{LandmarkState, Track};
+use crate::gate::search_gate;
+use crate::landmark::Landmark;
+use crate::outcome::{LandmarkOutcome, Miss, Prediction, Sighting};
+use crate::predict::{Fix, Predictor};
+use crate::probe::StageProbe;
+use crate::register::{Request, Workspace, register};
+
+/// A further object of the same landmark needs this part of the best one's score.
+const FURTHER_PART: f32 = 0.75;
+/// Objects unseen for so many frames are forgotten.
+const GIVE_UP_AFTER: u32 = 45;
+
+/// Registers one landmark and updates what is known of it.
+pub(super) fn landmark<P: StageProbe>(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    state: &mut LandmarkState,
+    budget: &mut Budget,
+    workspace: &mut Workspace,
+    probe: &mut P,
+) -> Vec<LandmarkOutcome> {
+    budget.spend(u64::from(scene.frame.width()) * u64::from(scene.frame.height()));
+    let request = Request { shape_veto: scene.options.shape_veto, ..Request::default() };
+    let seen = register(scene.frame, landmark, &request, workspace, probe);
+    let miss = seen.as_ref().err().copied().unwrap_or(Miss::NoColour { best: None });
+    let mut seen = seen.unwrap_or_default();
+    let least = FURTHER_PART * seen.first().map_or(0.0, |best| best.score);
+    seen.retain(|sighting| sighting.score >= least);
+    seen.truncate(scene.options.max_instances as usize);
+    let mut outcomes = Vec::with_capacity(seen.len().max(1));
+    for track in &mut state.tracks {
+        let prediction = track.predictor.predict(scene.captured_at);
+        let outcome = match take_nearest(&prediction, &mut seen) {
+            Some(sighting) => advance(scene, landmark, track, &prediction, sighting),
+            None => {
+                track.misses += 1;
+                report::missed(landmark, track.instance, miss)
+            }
+        };
+        outcomes.push(LandmarkOutcome { prediction: Some(prediction), ..outcome });
+    }
+    state.tracks.retain(|track| track.misses < GIVE_UP_AFTER);
+    for sighting in seen {
+        outcomes.push(begin(scene, landmark, state, sighting));
+    }
+    if outcomes.is_empty() {
+        outcomes.push(report::missed(landmark, 0, miss));
+    }
+    outcomes
+}
+
+/// The sighting nearest to a prior, when it can be the same object.
+fn take_nearest(prediction: &Prediction, seen: &mut Vec<Sighting>) -> Option<Sighting> {
+    let gate = search_gate(prediction);
+    let near = |sighting: &Sighting| sighting.centroid.distance_px(prediction.centroid);
+    let inside = seen.iter().enumerate().filter(|(_, sighting)| gate.contains(sighting.centroid));
+    let at = inside.min_by(|a, b| near(a.1).total_cmp(&near(b.1))).map(|(at, _)| at)?;
+    Some(seen.remove(at))
+}
+
+fn advance(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    track: &mut Track,
+    prediction: &Prediction,
+    sighting: Sighting,
+) -> LandmarkOutcome {
+    track.misses = 0;
+    track.sightings += 1;
+    track.predictor.update(fix(scene, &sighting));
+    let innovation_px = Some(prediction.centroid.distance_px(sighting.centroid));
+    LandmarkOutcome { innovation_px, ..report::measured(landmark, track.instance, sighting) }
+}
+
+fn begin(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    state: &mut LandmarkState,
+    sighting: Sighting,
+) -> LandmarkOutcome {
+    let predictor = Predictor::new(scene.options.prediction, fix(scene, &sighting));
+    let track = state.begin(predictor, 1.0, sighting.score);
+    report::measured(landmark, track.instance, sighting)
+}
+
+fn fix(scene: &Scene<'_>, sighting: &Sighting) -> Fix {
+    Fix { captured_at: scene.captured_at, centroid: sighting.centroid, area_px2: sighting.area_px2 }
+}

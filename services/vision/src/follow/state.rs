@@ -1,0 +1,65 @@
+//! All that the outcome of later frames depends on: plain data.
+
+use super::FrameStamp;
+use crate::landmark::{Digest, Landmark};
+use crate::predict::Predictor;
+
+/// The state of a [`Follow`](super::Follow) between two frames.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FollowState {
+    /// The last frame seen.
+    pub last: Option<FrameStamp>,
+    /// Noise variance of the camera, levels², R, G, B.
+    pub noise_variance: [f32; 3],
+    /// The landmark whose turn comes first, an index into the set.
+    pub turn: usize,
+    /// One entry for each landmark, in the order of the set.
+    pub landmarks: Vec<LandmarkState>,
+}
+
+/// What is known of one landmark's objects.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LandmarkState {
+    /// The landmark's id.
+    pub id: String,
+    /// The digest of its descriptor.
+    pub digest: Digest,
+    /// The number that the next new object gets.
+    pub next_instance: u32,
+    /// Frames since the whole frame was last searched for it.
+    pub frames_since_search: u32,
+    /// Its objects, by instance number.
+    pub tracks: Vec<Track>,
+}
+
+/// One object that was seen at least once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Track {
+    /// Its instance number.
+    pub instance: u32,
+    /// Its motion.
+    pub predictor: Predictor,
+    /// Brightness over the descriptor's, followed.
+    pub gain: f32,
+    /// Score, followed.
+    pub score: f32,
+    /// Frames in which it was seen.
+    pub sightings: u32,
+    /// Frames since it was last seen.
+    pub misses: u32,
+}
+
+impl LandmarkState {
+    /// Of a landmark that was never seen.
+    #[must_use]
+    pub fn new(landmark: &Landmark) -> Self {
+        Self { id: landmark.id.clone(), digest: landmark.digest, ..Self::default() }
+    }
+    /// A new object, seen for the first time.
+    pub(super) fn begin(&mut self, predictor: Predictor, gain: f32, score: f32) -> &Track {
+        let instance = self.next_instance;
+        self.next_instance += 1;
+        self.tracks.push(Track { instance, predictor, gain, score, sightings: 1, misses: 0 });
+        &self.tracks[self.tracks.len() - 1]
+    }
+}
