@@ -128,7 +128,7 @@ impl Storage for SlowDisk {
 
 #[test]
 fn a_slow_disk_costs_messages_but_never_time_and_every_loss_is_counted() {
-    let (disk, (release, gate)) = (FaultyDisk::new(100 << 20), mpsc::channel());
+    let (disk, (release, gate)) = (FaultyDisk::new(100 << 20), mpsc::sync_channel::<()>(0));
     let mut bounded = options("".as_ref());
     bounded.queue = crate::QueueBounds { messages: 10_000, bytes: 1 << 20 };
     let slow = SlowDisk(disk.clone(), Arc::new(Mutex::new(gate)));
@@ -158,7 +158,7 @@ fn a_slow_disk_costs_messages_but_never_time_and_every_loss_is_counted() {
 
 #[test]
 fn a_disk_that_hangs_does_not_hold_up_the_end() {
-    let (release, gate) = mpsc::channel();
+    let (release, gate) = mpsc::sync_channel::<()>(0);
     let slow = SlowDisk(FaultyDisk::new(1 << 20), Arc::new(Mutex::new(gate)));
     let journal = Journal::start_on(options("".as_ref()), slow).unwrap();
     journal.offer(message(&channel("/log"), 0, 10));
