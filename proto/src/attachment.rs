@@ -3,6 +3,8 @@
 //! Layout: `i64` little-endian sequence number, `i64` little-endian source time (ns since the Unix epoch), `0x10` (the
 //! length of what follows), 16 bytes naming the publisher. Reference: `ros2/rmw_zenoh`, `attachment_helpers.cpp`.
 
+use std::sync::atomic::{AtomicI64, Ordering};
+
 /// Names one publisher for as long as it lives.
 pub type Gid = [u8; 16];
 
@@ -61,6 +63,27 @@ impl Attachment {
     }
 }
 
+/// Numbers and signs what one publisher sends.
+#[derive(Debug)]
+pub struct Stamper {
+    gid: Gid,
+    last: AtomicI64,
+}
+
+impl Stamper {
+    /// For a publisher named `gid`, whose first sample has the number 1.
+    #[must_use]
+    pub const fn new(gid: Gid) -> Self {
+        Self { gid, last: AtomicI64::new(0) }
+    }
+
+    /// The attachment of the next sample.
+    pub fn stamp(&self, source_time_ns: i64) -> Attachment {
+        let sequence = self.last.fetch_add(1, Ordering::Relaxed) + 1;
+        Attachment { sequence, source_time_ns, gid: self.gid }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -85,6 +108,13 @@ mod tests {
         marked[16] = 0x11;
         let refused = Attachment::from_bytes(&marked).unwrap_err();
         assert!(refused.to_string().contains("Some(17)"), "{refused}");
+    }
+
+    #[test]
+    fn samples_are_numbered_from_one() {
+        let stamper = Stamper::new([7; 16]);
+        assert_eq!(stamper.stamp(5), Attachment { sequence: 1, source_time_ns: 5, gid: [7; 16] });
+        assert_eq!(stamper.stamp(6).sequence, 2);
     }
 
     proptest! {
