@@ -9,6 +9,7 @@
 //! and `FileDescriptorSet`. All times are nanoseconds since the Unix epoch, as MCAP has them.
 
 mod account;
+pub mod check;
 mod chunk;
 mod error;
 mod file_name;

@@ -13,18 +13,21 @@ use crate::{
 /// The wall clock all tests start at: 2024-03-01T00:00:00Z.
 pub(crate) const START_NS: u64 = 1_709_251_200_000_000_000;
 
+/// `package test; message Message {}` as a `FileDescriptorSet`.
+const FILE_DESCRIPTOR_SET: &[u8] = b"\x0a\x1c\x0a\x01t\x12\x04test\x22\x09\x0a\x07Message\x62\x06proto3";
+
 pub(crate) fn channel(topic: &str) -> Arc<ChannelSpec> {
     Arc::new(ChannelSpec {
         topic: topic.to_owned(),
         key_expression: format!("waymark/v1/test{topic}"),
         schema: Schema {
             name: "test.Message".to_owned(),
-            file_descriptor_set: Bytes::from_static(b"\x0a\x00"),
+            file_descriptor_set: Bytes::from_static(FILE_DESCRIPTOR_SET),
         },
     })
 }
 
-/// Message `sequence` on `channel`, `bytes` long, filled with what tells it from every other.
+/// Message `sequence` on `channel`: a protobuf field of `bytes` bytes that tell it from every other.
 pub(crate) fn message(channel: &Arc<ChannelSpec>, sequence: u32, bytes: usize) -> Message {
     let mut random = u64::from(sequence).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let noise = std::iter::repeat_with(|| {
@@ -33,13 +36,16 @@ pub(crate) fn message(channel: &Arc<ChannelSpec>, sequence: u32, bytes: usize) -
         random ^= random << 17;
         random as u8
     });
+    // Field 1, length-delimited, its length a varint of three bytes.
+    let length = |shift: usize, more: u8| (bytes >> shift & 0x7f) as u8 | more;
+    let field_prefix = [0x0a, length(0, 0x80), length(7, 0x80), length(14, 0)];
     let log_time_ns = START_NS + u64::from(sequence) * 1_000_000;
     Message {
         channel: Arc::clone(channel),
         log_time_ns,
         publish_time_ns: log_time_ns - 500_000,
         sequence,
-        data: noise.take(bytes).collect(),
+        data: field_prefix.into_iter().chain(noise.take(bytes)).collect(),
         latch: Latch::None,
     }
 }
