@@ -1,7 +1,7 @@
 // Every vehicle that is present.
 
 import { byId, make, makeState, reconcile, setText, showState } from "./dom.js";
-import { duration } from "./words.js";
+import { ago } from "./words.js";
 
 const kept = new Map();
 
@@ -17,6 +17,6 @@ export function showFleet(fleet) {
     setText(name, one.vehicle);
     setText(role, one.role);
     const stale = typeof one.age_s === "number" && one.age_s > 3;
-    showState(state, stale ? "warn" : "good", typeof one.age_s === "number" ? `heard ${duration(one.age_s)} ago` : "present");
+    showState(state, stale ? "warn" : "good", typeof one.age_s === "number" ? `heard ${ago(one.age_s)}` : "present");
   }
 }

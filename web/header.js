@@ -1,8 +1,8 @@
 // The header: is it alive, is it seeing, is it being recorded.
 
 import { byId, make, makeState, reconcile, setText, showState } from "./dom.js";
-import { bytes, duration, figure } from "./words.js";
-import { LOST_AFTER_S, frameAgeMs, known, silenceS } from "./state.js";
+import { ago, bytes, duration, figure } from "./words.js";
+import { LOST_AFTER_S, STALE_AFTER_MS, frameAgeMs, known, silenceS } from "./state.js";
 
 /** @typedef {{name: string, level: import("./dom.js").Level, words: string}} Item */
 
@@ -30,10 +30,10 @@ function leader(leader) {
   const name = leader.vehicle ? `Leader ${leader.vehicle}` : "Leader";
   const age = typeof leader.age_s === "number" ? leader.age_s + (silenceS() ?? 0) : null;
   if (leader.present) {
-    return { name, level: "good", words: age === null ? "present" : `present, heard ${duration(age)} ago` };
+    return { name, level: "good", words: age === null ? "present" : `present, heard ${ago(age)}` };
   }
   if (age === null) return { name, level: "warn", words: "never heard" };
-  return { name, level: "warn", words: `absent, last heard ${duration(age)} ago` };
+  return { name, level: "warn", words: `absent, last heard ${ago(age)}` };
 }
 
 /** @returns {Item[]} */
@@ -47,7 +47,7 @@ function camera(camera) {
   const name = `Camera ${camera.id}`;
   const age = frameAgeMs(camera);
   if (camera.state === "waiting" || age === null) return { name, level: "warn", words: "waiting for its first frame" };
-  if (camera.state === "live" && age <= 2000) {
+  if (camera.state === "live" && age <= STALE_AFTER_MS) {
     return { name, level: "good", words: `live, ${figure(camera.fps, 1, "fps")}, frame ${roundedAge(age)} old` };
   }
   return { name, level: "bad", words: `stopped, last frame ${duration(age / 1000)} old` };

@@ -1,9 +1,9 @@
 // The landmark table: what is looked for, what was observed, and why not.
 
 import { byId, make, makeState, reconcile, setText, showState } from "./dom.js";
-import { known } from "./state.js";
+import { STALE_AFTER_MS, frameAgeMs, known } from "./state.js";
 import { compare } from "./statistics.js";
-import { MISSING, figure, missInWords } from "./words.js";
+import { MISSING, ago, figure, missInWords } from "./words.js";
 
 /** @type {Map<string, HTMLTableRowElement>} */
 const rows = new Map();
@@ -25,10 +25,12 @@ export function showLandmarks() {
   const body = byId("landmarks").querySelector("tbody");
   if (!body) return;
   reconcile(body, rows, all.map((one) => one.key), makeRow);
-  for (const one of all) fillRow(/** @type {HTMLTableRowElement} */ (rows.get(one.key)), one);
+  const ageMs = known.camera ? frameAgeMs(known.cameras.get(known.camera)) : null;
+  for (const one of all) fillRow(/** @type {HTMLTableRowElement} */ (rows.get(one.key)), one, ageMs);
   byId("landmarks").hidden = all.length === 0;
   byId("landmark-none").hidden = all.length > 0;
-  const measured = all.filter((one) => one.entry.result === "measured").length;
+  const isOld = ageMs !== null && ageMs > STALE_AFTER_MS;
+  const measured = isOld ? 0 : all.filter((one) => one.entry.result === "measured").length;
   const version = known.version ? ` · set ${known.version.epoch}.${known.version.version}` : "";
   setText(byId("landmark-facts"), `${measured} of ${all.length} measured${version}`);
 }
@@ -46,6 +48,9 @@ function makeRow(key) {
   facts.dataset.label = "Where and how well";
   const row = make("tr", "", name, result, mean, variance, facts);
   row.dataset.key = key;
+  row.setAttribute("role", "row");
+  name.setAttribute("role", "rowheader");
+  for (const cell of [result, mean, variance, facts]) cell.setAttribute("role", "cell");
   return row;
 }
 
@@ -55,22 +60,25 @@ function makeStatistic(channel) {
     make("span", "channel quiet", channel), make("span", "expected quiet"), make("span", "observed"), makeState("verdict"));
 }
 
-/** @param {HTMLTableRowElement} row @param {{landmark: any, entry: any, several: boolean}} one */
-function fillRow(row, { landmark, entry, several }) {
+/** @param {HTMLTableRowElement} row @param {{landmark: any, entry: any, several: boolean}} one @param {number | null} ageMs */
+function fillRow(row, { landmark, entry, several }, ageMs) {
   const [name, result, mean, variance, facts] = row.children;
   setText(name.children[0], several ? `${landmark.id} #${entry.instance}` : landmark.id);
   const comparison = compare(landmark, entry.observed ?? entry.miss?.observed, entry.gain);
   const shade = comparison.shades > 1 ? ` · shade ${comparison.shade} of ${comparison.shades}` : "";
   setText(name.children[1], `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}`);
-  fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry);
+  fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry, ageMs);
   comparison.mean.forEach((one, index) => fillStatistic(mean.children[0].children[index], one));
   comparison.variance.forEach((one, index) => fillStatistic(variance.children[0].children[index], one));
   fillFacts(facts.firstElementChild, entry);
 }
 
-/** @param {HTMLElement} state @param {any} entry */
-function fillResult(state, entry) {
-  if (entry.result === null) showState(state, "unknown", "not looked for yet");
+/** @param {HTMLElement} state @param {any} entry @param {number | null} ageMs */
+function fillResult(state, entry, ageMs) {
+  if (entry.result !== null && ageMs !== null && ageMs > STALE_AFTER_MS) {
+    const what = entry.result === "measured" ? "last measured" : "last looked for in vain";
+    showState(state, "warn", `not now: ${what} ${ago(ageMs / 1000)}`);
+  } else if (entry.result === null) showState(state, "unknown", "not looked for yet");
   else if (entry.result === "measured") showState(state, "good", "measured");
   else showState(state, "bad", `missed: ${missInWords(entry.result, entry.miss)}`);
 }

@@ -2,7 +2,7 @@
 
 import { Problem, nextPicture } from "./api.js";
 import { byId, make, reconcile, setAttribute, setText } from "./dom.js";
-import { known } from "./state.js";
+import { STALE_AFTER_MS, known } from "./state.js";
 import { duration, figure } from "./words.js";
 
 const LAYER_NAMES = {
@@ -101,7 +101,7 @@ export function showLive() {
   times = times.filter((time) => now - time < 2000);
   if (shown) {
     const ageMs = shown.ageMs + now - shown.at;
-    if (ageMs > 2000) explain(`Not live: this picture is ${duration(ageMs / 1000)} old`);
+    if (ageMs > STALE_AFTER_MS) explain(`Not live: this picture is ${duration(ageMs / 1000)} old`);
     const rate = times.length > 1 ? ((times.length - 1) * 1000) / (times[times.length - 1] - times[0]) : null;
     setText(byId("frame-facts"),
       `frame ${shown.sequence} · ${figure(rate, 0, "fps shown")} · ${shown.width} × ${shown.height} px`);

@@ -14,16 +14,27 @@ const SETTLE_MS = 500;
 /** @type {Map<string, {said: string, now: string, since: number}>} */
 const watched = new Map();
 
+let opened = false;
+
 /** Compares what is known now with what was said last. */
 export function watchChanges() {
+  if (!opened) write("This page", { level: "unknown", words: "opened" });
+  opened = true;
   for (const item of items()) watch(item.name, { level: item.level, words: item.words.split(",")[0] }, `${item.name}|${item.level}`, 0);
   for (const camera of known.cameras.values()) {
     for (const entry of camera.landmarks ?? []) {
       const measured = entry.result === "measured";
       const words = measured ? "measured" : `lost: ${missInWords(entry.result, entry.miss)}`;
-      watch(`${entry.id} #${entry.instance} in ${camera.id}`, { level: measured ? "good" : "bad", words }, entry.result, SETTLE_MS);
+      watch(nameOf(entry, camera), { level: measured ? "good" : "bad", words }, entry.result, SETTLE_MS);
     }
   }
+}
+
+/** As short as it can be without confusion. @param {any} entry @param {any} camera */
+function nameOf(entry, camera) {
+  const instance = entry.instance > 0 ? ` #${entry.instance}` : "";
+  const place = known.cameras.size > 1 ? ` in ${camera.id}` : "";
+  return `Landmark ${entry.id}${instance}${place}`;
 }
 
 /** @param {string} what @param {State} state @param {string} mark @param {number} settleMs */
@@ -36,8 +47,10 @@ function watch(what, state, mark, settleMs) {
   }
   const current = watched.get(what);
   if (current && current.said !== mark && now - current.since >= settleMs) {
+    // What is well from the start is no change.
+    const isNews = current.said !== "" || state.level !== "good";
     current.said = mark;
-    write(what, state);
+    if (isNews) write(what, state);
   }
 }
 

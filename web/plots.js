@@ -88,13 +88,14 @@ function drawPlot({ canvas, legend, scale }, plot, lines, now, style) {
     height - PADDING_PX.bottom - ((value - low) / (high - low || 1)) * (height - PADDING_PX.top - PADDING_PX.bottom);
   pen.clearRect(0, 0, width, height);
   drawGrid(pen, width, height, style);
+  const colours = lines.map(([name], index) => lineColour(name, index, style));
   lines.forEach(([, samples], index) => {
-    pen.strokeStyle = style.getPropertyValue(`--line-${index + 1}`);
+    pen.strokeStyle = colours[index];
     pen.setLineDash(DASHES[index]);
     drawLine(pen, samples, x, y);
   });
   if (cursorS !== null) drawCursor(pen, width * (1 - cursorS / SPAN_S), height, style);
-  showLegend(legend, plot, lines, now);
+  showLegend(legend, plot, lines, colours, now);
   canvas.setAttribute("aria-label", `${plot.name}, last ${SPAN_S} s; the values are listed below`);
 }
 
@@ -163,8 +164,25 @@ function drawCursor(pen, x, height, style) {
   pen.stroke();
 }
 
-/** @param {HTMLElement} legend @param {(typeof PLOTS)[number]} plot @param {[string, import("./history.js").Sample[]][]} lines @param {number} now */
-function showLegend(legend, plot, lines, now) {
+/**
+ * A landmark's own colour, as light or dark as the page needs it; other lines take the page's colours in turn.
+ * @param {string} name @param {number} index @param {CSSStyleDeclaration} style
+ */
+function lineColour(name, index, style) {
+  const landmark = known.landmarks.find((one) => one.id === name.split(" #")[0]);
+  if (!landmark) return style.getPropertyValue(`--line-${index + 1}`);
+  const [red, green, blue] = landmark.shades[0].mean;
+  const [low, high] = [Math.min(red, green, blue), Math.max(red, green, blue)];
+  const saturation = high > 0 ? Math.round((70 * (high - low)) / high) : 0;
+  const hue = Math.round((Math.atan2(Math.sqrt(3) * (green - blue), 2 * red - green - blue) * 180) / Math.PI);
+  return `hsl(${hue} ${saturation}% ${style.getPropertyValue("--line-lightness")})`;
+}
+
+/**
+ * @param {HTMLElement} legend @param {(typeof PLOTS)[number]} plot
+ * @param {[string, import("./history.js").Sample[]][]} lines @param {string[]} colours @param {number} now
+ */
+function showLegend(legend, plot, lines, colours, now) {
   while (legend.children.length > lines.length) legend.lastElementChild?.remove();
   while (legend.children.length < lines.length) {
     const key = make("span", `key key-${legend.children.length + 1}`);
@@ -173,6 +191,7 @@ function showLegend(legend, plot, lines, now) {
   }
   lines.forEach(([name, samples], index) => {
     const value = valueAt(samples, now - (cursorS ?? 0) * 1000);
+    /** @type {HTMLElement} */ (legend.children[index].children[0]).style.borderTopColor = colours[index];
     setText(legend.children[index].children[1], name);
     setText(legend.children[index].children[2], figure(value, plot.digits, value === null ? "" : plot.unit));
   });

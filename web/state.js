@@ -60,3 +60,6 @@ export function silenceS() {
 
 /** The service counts as lost after this long without an answer. */
 export const LOST_AFTER_S = 3;
+
+/** A frame older than this is not now. */
+export const STALE_AFTER_MS = 2000;

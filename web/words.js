@@ -18,6 +18,11 @@ export function duration(seconds) {
   return `${Math.round(seconds / 3600)} h`;
 }
 
+/** How long ago, without figures that change too fast to read. @param {number} seconds */
+export function ago(seconds) {
+  return seconds < 1 ? "under 1 s ago" : `${duration(Math.floor(seconds))} ago`;
+}
+
 /** @param {number | null | undefined} count */
 export function bytes(count) {
   if (typeof count !== "number" || !Number.isFinite(count)) return MISSING;
@@ -31,6 +36,7 @@ export function bytes(count) {
   return `${value.toFixed(step === 0 || value >= 100 ? 0 : 1)} ${units[step]}`;
 }
 
+/** @type {Record<string, (miss: Record<string, any>) => string>} */
 const MISSES = {
   outside_frame: () => "expected outside the picture",
   no_colour: (miss) => `no part of the picture has its colours${nearest(miss)}`,
@@ -44,7 +50,7 @@ const MISSES = {
 
 /** Why a landmark was not measured. @param {string} result @param {Record<string, any> | null} [miss] */
 export function missInWords(result, miss) {
-  const words = MISSES[/** @type {keyof typeof MISSES} */ (result)];
+  const words = MISSES[result];
   return words ? words(miss ?? {}) : result.replaceAll("_", " ");
 }
 

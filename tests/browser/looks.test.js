@@ -1,0 +1,61 @@
+// The page fits a phone and a desk, in light and dark, and can be used without eyes or mouse.
+
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { after, before, test } from "node:test";
+import { openBrowser } from "./browser.js";
+import { startDemo } from "./demo.js";
+import { openWatched } from "./watched_page.js";
+
+const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+
+/** @type {Awaited<ReturnType<typeof startDemo>>} */
+let demo;
+/** @type {import("playwright-core").Browser} */
+let browser;
+
+before(async () => {
+  [demo, browser] = await Promise.all([startDemo(), openBrowser()]);
+});
+after(async () => {
+  await browser?.close();
+  await demo?.stop();
+});
+
+const PHONE = { width: 360, height: 740 };
+const DESK = { width: 1280, height: 800 };
+
+for (const [screen, viewport] of Object.entries({ phone: PHONE, desk: DESK })) {
+  for (const colorScheme of /** @type {const} */ (["light", "dark"])) {
+    test(`axe finds nothing: ${screen}, ${colorScheme}`, async () => {
+      const { page, complaints, close } = await openWatched(browser, demo.url, { viewport, colorScheme, bypassCSP: true });
+      await page.locator("#landmarks .result .words").first().waitFor();
+      await page.evaluate(AXE);
+      // @ts-ignore the line above defines axe
+      const { violations } = await page.evaluate(() => window.axe.run());
+      const found = violations.map((/** @type {any} */ one) => `${one.id}: ${one.nodes.map((/** @type {any} */ node) => node.html).join(" ")}`);
+      assert.deepEqual(found, []);
+      assert.deepEqual(complaints, []);
+      await close();
+    });
+  }
+}
+
+for (const width of [360, 768, 1280, 1920, 3840]) {
+  test(`nothing sticks out at ${width} px`, async () => {
+    const { page, close } = await openWatched(browser, demo.url, { viewport: { width, height: 900 } });
+    await page.locator("#landmarks .result .words").first().waitFor();
+    const sticksOut = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+    assert.equal(sticksOut, 0);
+    await close();
+  });
+}
+
+test("the first key leads to the live picture", async () => {
+  const { page, close } = await openWatched(browser, demo.url);
+  await page.keyboard.press("Tab");
+  await page.keyboard.press("Enter");
+  assert.equal(await page.evaluate(() => document.activeElement?.id), "live");
+  await close();
+});

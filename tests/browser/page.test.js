@@ -1,0 +1,126 @@
+// The page on the running program: what a person sees, and that nothing goes wrong on the way.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { openBrowser } from "./browser.js";
+import { startDemo } from "./demo.js";
+import { openWatched } from "./watched_page.js";
+
+/** @type {Awaited<ReturnType<typeof startDemo>>} */
+let demo;
+/** @type {import("playwright-core").Browser} */
+let browser;
+
+before(async () => {
+  [demo, browser] = await Promise.all([startDemo(), openBrowser()]);
+});
+after(async () => {
+  await browser?.close();
+  await demo?.stop();
+});
+
+/** @param {string} state the selector of a state @param {import("playwright-core").Page} page */
+const wordsOf = (page, state) => page.locator(`${state} .words`).first();
+
+test("loads without a complaint, from this service alone, and is light", async () => {
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  /** @type {string[]} */
+  const foreign = [];
+  let bytes = 0;
+  page.on("request", (request) => {
+    if (!request.url().startsWith(demo.url) && !request.url().startsWith("blob:")) foreign.push(request.url());
+  });
+  page.on("response", async (response) => {
+    const isPage = !new URL(response.url()).pathname.startsWith("/api/");
+    if (isPage) bytes += Number(response.headers()["content-length"] ?? 0);
+  });
+  await page.goto(demo.url);
+  await page.waitForFunction(() => Boolean(document.querySelector("#picture")?.dataset.sequence));
+  await context.close();
+  assert.deepEqual(foreign, []);
+  assert.ok(bytes > 0 && bytes <= 250_000, `${bytes} bytes before the first picture`);
+});
+
+test("the picture is live and the header says so in words", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  const sequence = () => page.locator("#picture").getAttribute("data-sequence");
+  const first = await sequence();
+  await page.waitForFunction((first) => document.querySelector("#picture")?.dataset.sequence !== first, first);
+  assert.ok(Number(await sequence()) > Number(first), "pictures come in order");
+  const states = page.locator("#states");
+  await states.getByText(/^live, /).waitFor();
+  await states.getByText(/^present/).waitFor();
+  await states.getByText("connected", { exact: true }).waitFor();
+  assert.match((await page.locator("#frame-facts").textContent()) ?? "", /frame \d+ · \d+ fps shown · \d+ × \d+ px/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("red and blue are measured, with six statistics each, expected and observed", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  for (const id of ["red", "blue"]) {
+    const row = page.locator("#landmarks tbody tr", { has: page.locator(".name", { hasText: new RegExp(`^${id}`) }) }).first();
+    await row.locator(".result .words", { hasText: /^measured$/ }).waitFor();
+    const statistics = row.locator(".statistic");
+    assert.equal(await statistics.count(), 6, id);
+    for (const statistic of await statistics.all()) {
+      assert.match((await statistic.locator(".expected").textContent()) ?? "", /^\d+ ± \d+$/);
+      assert.match((await statistic.locator(".observed").textContent()) ?? "", /^\d+$/);
+      assert.match((await statistic.locator(".verdict .words").textContent()) ?? "", /^(within|\d+ (over|under))$/);
+    }
+  }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("layers are asked of the service as they are toggled, also from the keyboard", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  const layersOf = (/** @type {import("playwright-core").Request} */ request) =>
+    (new URL(request.url()).searchParams.get("layers") ?? "").split(",");
+  const isPicture = (/** @type {import("playwright-core").Request} */ request) => request.url().includes("/overlay.jpg");
+  const boxes = page.locator("#layers input");
+  assert.ok((await boxes.count()) >= 5, "there are layers to choose from");
+  for (const box of await boxes.all()) {
+    const name = (await box.getAttribute("name")) ?? "";
+    for (let times = 0; times < 2; times += 1) {
+      const wanted = !(await box.isChecked());
+      const asked = page.waitForRequest((request) => isPicture(request) && layersOf(request).includes(name) === wanted);
+      await box.focus();
+      await page.keyboard.press("Space");
+      await asked;
+    }
+  }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("the recorder's state is shown and can be changed", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  const state = wordsOf(page, "#recorder-state");
+  await page.locator("#recorder-state").getByText("recording", { exact: true }).waitFor();
+  assert.match((await page.locator("#recorder").textContent()) ?? "", /File.+\.mcap.*Written.+B.*Free.+B/);
+  await page.getByRole("button", { name: "Stop" }).click();
+  await page.locator("#recorder-state").getByText("off", { exact: true }).waitFor();
+  await page.locator("#log").getByText("Recorder").first().waitFor();
+  await page.getByRole("button", { name: "Start" }).click();
+  await page.locator("#recorder-state").getByText("recording", { exact: true }).waitFor();
+  assert.equal(await state.textContent(), "recording");
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("plots share one cursor, moved by pointer or keys", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  const moment = page.locator("#plot-moment");
+  await page.locator("#plots").focus();
+  await page.keyboard.press("ArrowLeft");
+  await page.keyboard.press("ArrowLeft");
+  assert.equal(await moment.textContent(), "2 s ago");
+  await page.keyboard.press("Escape");
+  assert.equal(await moment.textContent(), "now");
+  await page.locator("#plots canvas").first().hover();
+  await moment.getByText("30 s ago").waitFor();
+  assert.deepEqual(complaints, []);
+  await close();
+});
