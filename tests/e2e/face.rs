@@ -1,6 +1,6 @@
 //! The web face of a running vehicle, as a client sees it.
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::time::Instant;
 
 use serde_json::Value;
@@ -65,7 +65,7 @@ impl Face {
     pub fn json_once(&self, path: &str, wanted: impl Fn(&Value) -> bool) -> Value {
         let deadline = Instant::now() + DEADLINE;
         let mut document = self.json(path);
-        let mut events = BufReader::new(self.open("/api/v1/events").into_body().into_reader()).lines();
+        let mut events = BufReader::new(self.stream("/api/v1/events")).lines();
         while !wanted(&document) {
             assert!(Instant::now() < deadline, "GET {path} stays at {document:#}");
             let event = events.next().unwrap_or_else(|| panic!("events ended; GET {path} was {document:#}"));
@@ -74,6 +74,14 @@ impl Face {
             }
         }
         document
+    }
+
+    /// Begins to read an answer without end.
+    ///
+    /// # Panics
+    /// When nobody answers.
+    pub fn stream(&self, path: &str) -> impl Read + use<> {
+        self.open(path).into_body().into_reader()
     }
 
     fn open(&self, path: &str) -> Response<Body> {

@@ -5,6 +5,7 @@
 pub mod face;
 pub mod program;
 
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -31,4 +32,15 @@ pub fn waymark() -> PathBuf {
         path.display()
     );
     path
+}
+
+/// An address on the loopback that nobody listens on.
+///
+/// # Panics
+/// When the operating system has none left.
+#[must_use]
+pub fn free_address() -> String {
+    let listener = TcpListener::bind(("127.0.0.1", 0));
+    let address = listener.and_then(|listener| listener.local_addr());
+    address.unwrap_or_else(|error| panic!("no free address: {error}")).to_string()
 }

@@ -1,6 +1,8 @@
 //! End to end: what only shows when everything runs together, and rules about the repository as a whole.
 
-#![allow(clippy::unwrap_used)] // all of this is test code; the lint's own exception only knows #[test] functions
+#![allow(clippy::unwrap_used, clippy::print_stderr)] // all of this is test code: the lints know only #[test] functions
 
+mod crash;
+mod demo;
 mod dependency_rule;
 mod documented_commands;
