@@ -1,1 +1,10 @@
-//! Where frames come from: source URIs, decoders, the newest-wins mailbox, and the thread that drives vision::Follow.
+//! Where frames come from: source URIs, pictures as they arrive, the newest-wins mailbox, and the thread that drives
+//! [`vision::follow::Follow`].
+
+pub mod camera_thread;
+pub mod encoded;
+pub mod mailbox;
+pub mod picture_message;
+pub mod pictures;
+pub mod recorded;
+pub mod source;

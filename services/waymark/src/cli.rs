@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::completion;
+use crate::commands::{completion, landmark, register};
 
 /// What stands below the options.
 const EXIT_CODES: &str = "Exit codes: 0 fine, 1 failed, 2 usage or configuration, 3 finished with data lost.";
@@ -15,12 +15,19 @@ const EXIT_CODES: &str = "Exit codes: 0 fine, 1 failed, 2 usage or configuration
 #[derive(Debug, Parser)]
 #[command(name = "waymark", version, after_help = EXIT_CODES)]
 pub(crate) struct Cli {
+    /// No progress and no notes: only results, warnings and errors
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+
     #[command(subcommand)]
     pub(crate) command: Command,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    #[command(subcommand)]
+    Landmark(landmark::Command),
+    Register(register::Args),
     Completion(completion::Args),
 }
 

@@ -69,10 +69,38 @@ fn is_closed_pipe(error: &anyhow::Error) -> bool {
 }
 
 fn tell(error: &anyhow::Error) {
-    let mut text = format!("error: {error}\n");
-    for cause in error.chain().skip(1) {
-        text.push_str(&format!("  because: {cause}\n"));
-    }
     // Nothing can be told when stderr itself is gone; the exit code still says it.
-    let _ = io::stderr().write_all(text.as_bytes());
+    let _ = io::stderr().write_all(told(error).as_bytes());
+}
+
+/// The error and its causes, a line each; a cause that an error above it already quotes is not repeated.
+fn told(error: &anyhow::Error) -> String {
+    let mut last = error.to_string();
+    let mut text = format!("error: {last}\n");
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !last.contains(&cause) {
+            text.push_str(&format!("  because: {cause}\n"));
+            last = cause;
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::{Context, anyhow};
+
+    #[test]
+    fn causes_are_told_once() {
+        let error = anyhow!("disk full").context("cannot write: disk full").context("no recording");
+        assert_eq!(told(&error), "error: no recording\n  because: cannot write: disk full\n");
+    }
+
+    #[test]
+    fn a_reader_that_went_away_is_no_failure() {
+        let gone: Result<(), _> = Err(io::Error::from(io::ErrorKind::BrokenPipe));
+        assert!(is_closed_pipe(&gone.context("cannot write the table").unwrap_err()));
+        assert!(!is_closed_pipe(&anyhow!("broken pipe")));
+    }
 }

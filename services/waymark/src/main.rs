@@ -1,6 +1,7 @@
 //! The one binary: argument parsing, then the service or the analysis that was asked for.
 
 mod cli;
+mod columns;
 mod commands;
 mod console;
 mod exit;

@@ -1,0 +1,176 @@
+//! Where offline frames come from: picture files, each a frame, or the cameras of a recording.
+
+mod pictures;
+mod replay;
+
+use std::sync::Arc;
+
+use ingest::encoded::EncodedFrame;
+use ingest::picture_message::NoPicture;
+use ingest::pictures::{OpenPicturesError, PictureFiles, ReadPictureError};
+use ingest::recorded::Damage;
+use ingest::source::{SourceUri, SourceUriError};
+use recording::RecordingError;
+use vision::LandmarkSet;
+
+use pictures::PictureFrames;
+use replay::Replay;
+
+pub use pictures::NOMINAL_RATE_HZ;
+
+/// An `INPUT` of the command line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Input {
+    /// As it was given; the `input` column of the result.
+    pub given: String,
+    source: SourceUri,
+}
+
+/// Why an input cannot be read.
+#[derive(Debug, thiserror::Error)]
+pub enum InputError {
+    /// The text names no source.
+    #[error(transparent)]
+    Uri(#[from] SourceUriError),
+    /// The text names a live source.
+    #[error(
+        "`{given}` is a live source, which has no end; give a directory or glob of pictures, or a recording"
+    )]
+    Live {
+        /// The text as given.
+        given: String,
+    },
+    /// The pictures cannot be listed.
+    #[error(transparent)]
+    Pictures(#[from] OpenPicturesError),
+    /// The recording cannot be read.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// The recording holds no such camera.
+    #[error("`{given}` holds no pictures{}; its image topics are: {}", on(topic), topics.join(", "))]
+    NoImages {
+        /// The text as given.
+        given: String,
+        /// The topic asked for.
+        topic: Option<String>,
+        /// What is there.
+        topics: Vec<String>,
+    },
+}
+
+fn on(topic: &Option<String>) -> String {
+    topic.as_ref().map_or_else(String::new, |topic| format!(" on {topic}"))
+}
+
+/// One frame of an input, still encoded.
+#[derive(Debug)]
+pub struct InputFrame {
+    /// Counts from 1 within its input and camera.
+    pub frame: u64,
+    /// The camera's id, where the input knows it.
+    pub camera: Option<Arc<str>>,
+    /// Where it was read from, for messages.
+    pub name: String,
+    /// The picture itself, or why it could not be read.
+    pub picture: Result<EncodedFrame, FrameError>,
+    /// What became of it when it was captured.
+    pub live: Live,
+}
+
+/// What a recording says of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Live {
+    /// Nothing: plain pictures, or a recording without landmarks.
+    Unknown,
+    /// These landmarks were looked for in it.
+    Registered(Arc<LandmarkSet>),
+    /// A newer frame replaced it before anyone looked.
+    Dropped,
+}
+
+/// Why a frame of an input could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum FrameError {
+    /// Its file.
+    #[error(transparent)]
+    File(#[from] ReadPictureError),
+    /// Its message.
+    #[error(transparent)]
+    Message(#[from] NoPicture),
+    /// A part of the recording, which may have held several.
+    #[error(transparent)]
+    Damage(#[from] Damage),
+    /// The recording could not be read any further.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}
+
+impl Input {
+    /// Reads what `given` names, without opening it.
+    ///
+    /// # Errors
+    /// When it names no source, or one that is not a file.
+    pub fn parse(given: &str) -> Result<Self, InputError> {
+        match given.parse()? {
+            SourceUri::Simulator(_) | SourceUri::Zenoh(_) => {
+                Err(InputError::Live { given: given.to_owned() })
+            }
+            source @ (SourceUri::Pictures(_) | SourceUri::Recording { .. }) => {
+                Ok(Self { given: given.to_owned(), source })
+            }
+        }
+    }
+
+    /// Opens it from its beginning. A recording is read through once, to learn what was looked for in which frame.
+    ///
+    /// # Errors
+    /// When nothing is there, or not what it should be.
+    pub fn open(&self) -> Result<Frames, InputError> {
+        match &self.source {
+            SourceUri::Pictures(spec) => Ok(Frames::Pictures(PictureFrames::new(PictureFiles::open(spec)?))),
+            SourceUri::Recording { file, topic } => {
+                Ok(Frames::Recording(Box::new(Replay::open(&self.given, file, topic.as_deref())?)))
+            }
+            SourceUri::Simulator(_) | SourceUri::Zenoh(_) => {
+                Err(InputError::Live { given: self.given.clone() })
+            }
+        }
+    }
+}
+
+/// The frames of an input in their order.
+pub enum Frames {
+    /// Picture files.
+    Pictures(PictureFrames),
+    /// A recording.
+    Recording(Box<Replay>),
+}
+
+impl Frames {
+    /// Whether the input says what to look for.
+    #[must_use]
+    pub fn brings_landmarks(&self) -> bool {
+        match self {
+            Self::Pictures(_) => false,
+            Self::Recording(replay) => replay.brings_landmarks(),
+        }
+    }
+}
+
+impl Iterator for Frames {
+    type Item = InputFrame;
+
+    fn next(&mut self) -> Option<InputFrame> {
+        match self {
+            Self::Pictures(frames) => frames.next(),
+            Self::Recording(replay) => replay.next(),
+        }
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        match self {
+            Self::Pictures(frames) => frames.size_hint(),
+            Self::Recording(replay) => replay.size_hint(),
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! A picture as it arrived: still encoded, with the stamps of its sample.
+
+use bytes::Bytes;
+
+use vision::Timestamp;
+
+/// How a picture's bytes are to be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// A self-contained file, JPEG or PNG, told apart by its first bytes.
+    File,
+    /// Bare pixels: rows of `step` bytes in the named order (`rgb8`, `bgr8`, `mono8`, …).
+    Raw {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Bytes from the beginning of one row to the next.
+        step: u32,
+        /// Order and depth of the channels, as ROS and Foxglove name them.
+        order: String,
+    },
+}
+
+/// A picture as it arrived.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EncodedFrame {
+    /// The picture's number in its stream.
+    pub sequence: u64,
+    /// When it was captured, capture clock.
+    pub captured_at: Timestamp,
+    /// How to read `bytes`.
+    pub encoding: Encoding,
+    /// The picture itself.
+    pub bytes: Bytes,
+}

@@ -1,0 +1,89 @@
+//! The pictures in messages, live and recorded: one reading, so that a replay sees what the camera's thread saw.
+
+use waymark_proto::foxglove;
+use waymark_proto::images::{self, UnusablePicture};
+use waymark_proto::payload::{RefusedPayload, WireMessage};
+
+use crate::encoded::{EncodedFrame, Encoding};
+
+/// Why a message holds no usable picture.
+#[derive(Debug, thiserror::Error)]
+pub enum NoPicture {
+    /// It cannot be decoded as a message.
+    #[error(transparent)]
+    Payload(#[from] RefusedPayload),
+    /// Its description cannot be used.
+    #[error(transparent)]
+    Description(#[from] UnusablePicture),
+}
+
+/// What kind of message a picture comes in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureKind {
+    /// `foxglove.CompressedImage`.
+    Compressed,
+    /// `foxglove.RawImage`.
+    Raw,
+}
+
+impl PictureKind {
+    /// The kind with that schema, `None` where a schema holds no pictures.
+    #[must_use]
+    pub fn of_schema(schema: &str) -> Option<Self> {
+        match schema {
+            foxglove::CompressedImage::SCHEMA => Some(Self::Compressed),
+            foxglove::RawImage::SCHEMA => Some(Self::Raw),
+            _ => None,
+        }
+    }
+
+    /// The picture in a message of this kind.
+    ///
+    /// # Errors
+    /// When the message cannot be decoded, or lacks what a picture needs.
+    pub fn read(self, sequence: u64, message: &[u8]) -> Result<EncodedFrame, NoPicture> {
+        match self {
+            Self::Compressed => compressed(sequence, message),
+            Self::Raw => raw(sequence, message),
+        }
+    }
+}
+
+fn compressed(sequence: u64, message: &[u8]) -> Result<EncodedFrame, NoPicture> {
+    let image = foxglove::CompressedImage::from_payload(message)?;
+    images::picture_format(&image)?;
+    let captured_at = images::picture_captured_at(&image)?;
+    Ok(EncodedFrame { sequence, captured_at, encoding: Encoding::File, bytes: image.data })
+}
+
+fn raw(sequence: u64, message: &[u8]) -> Result<EncodedFrame, NoPicture> {
+    let image = foxglove::RawImage::from_payload(message)?;
+    let timestamp = image.timestamp.as_ref().ok_or(UnusablePicture::NoTimestamp)?;
+    let captured_at = images::domain_time(timestamp);
+    let encoding =
+        Encoding::Raw { width: image.width, height: image.height, step: image.step, order: image.encoding };
+    Ok(EncodedFrame { sequence, captured_at, encoding, bytes: image.data })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bytes::Bytes;
+    use prost::Message;
+    use vision::Timestamp;
+    use waymark_proto::images::{PictureFormat, picture_message};
+
+    #[test]
+    fn a_compressed_picture_keeps_its_stamps() {
+        let at = Timestamp::from_nanos(1_700_000_000_123_456_789);
+        let message = picture_message(PictureFormat::Jpeg, Bytes::from_static(b"jpeg"), at, "front");
+        let frame = PictureKind::Compressed.read(7, &message.encode_to_vec()).unwrap();
+        assert_eq!((frame.sequence, frame.captured_at, &frame.bytes[..]), (7, at, &b"jpeg"[..]));
+    }
+
+    #[test]
+    fn what_is_no_picture_is_refused() {
+        assert_eq!(PictureKind::of_schema("foxglove.Log"), None);
+        assert!(PictureKind::Compressed.read(1, &[0xff; 8]).is_err());
+    }
+}

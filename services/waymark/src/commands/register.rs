@@ -1,0 +1,156 @@
+//! `waymark register`.
+
+mod names;
+mod tally;
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use analysis::input::{Frames, Input, InputError};
+use analysis::landmark_file::read_landmark_set;
+use analysis::register::{Event, Job, Timing, register};
+use analysis::row::{FrameKey, rows};
+use analysis::stage_times::StageTimes;
+use analysis::table::RowWriter;
+use anyhow::{Context, anyhow};
+use vision::follow::FollowOptions;
+use vision::register::ShapeVeto;
+
+use crate::console::Console;
+use crate::exit::{Ending, Failure, OrUsage};
+
+use names::{FormatName, ModeName, PredictionName};
+use tally::Tally;
+
+const EXAMPLES: &str = "\
+Examples:
+  waymark register drive --landmark red.json --landmark blue.json > drive.csv
+  waymark register 'left/*.jpg' --landmark stop.json --mode faithful --require-shape --stats cost.json
+  waymark register recordings/*.mcap --format ndjson > all.ndjson
+
+Columns: input, frame (from 1 within its input and camera), captured_at_ns (Unix epoch; nominal for plain pictures, 30 a second
+from 0), camera, landmark, instance, result (measured, or why not), x_px, y_px, area_px2, mask_area_2x, shape_score,
+score, predicted_x_px, predicted_y_px, predicted_area_px2, innovation_px, gain, bearing_rad, range_m. Unknown is empty.
+
+A picture that cannot be read or decoded is named on stderr, has no rows, and makes the exit code 3.";
+
+/// Register landmarks in pictures and recordings
+///
+/// Each input is a sequence, followed from its first frame to its last: a directory or a (quoted) glob of pictures in
+/// natural order, or the cameras of a recording. The result is a table with one row for each frame, landmark and
+/// instance.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Directories or quoted globs of pictures (JPEG, PNG), or recordings (FILE.mcap; mcap:FILE#TOPIC for one camera)
+    #[arg(required = true, value_name = "INPUT")]
+    inputs: Vec<String>,
+
+    /// Landmark file, as `waymark landmark learn` writes it; may be given several times. A recording brings its own
+    /// landmarks: without this option, they are looked for in the frames in which they were looked for live
+    #[arg(long = "landmark", short, value_name = "FILE")]
+    landmarks: Vec<PathBuf>,
+
+    /// How frames are searched
+    #[arg(long, value_enum, default_value_t = ModeName::Adaptive)]
+    mode: ModeName,
+
+    /// How the place in the next frame is predicted
+    #[arg(long, value_enum, default_value_t = PredictionName::Kalman)]
+    prediction: PredictionName,
+
+    /// Do not report objects that are large enough to show their shape and show another
+    #[arg(long)]
+    require_shape: bool,
+
+    /// How the table is written
+    #[arg(long, value_enum, default_value_t = FormatName::Csv)]
+    format: FormatName,
+
+    /// Write what each stage costs, in milliseconds of thread CPU time, as JSON
+    #[arg(long, value_name = "FILE")]
+    stats: Option<PathBuf>,
+
+    /// Inputs worked on at the same time [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+}
+
+pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
+    let job = args.job()?;
+    let inputs = open_inputs(&args.inputs)?;
+    if let Some((input, _)) =
+        inputs.iter().find(|(_, frames)| job.landmarks.is_none() && !frames.brings_landmarks())
+    {
+        return Err(Failure::Usage(anyhow!(
+            "`{}` brings no landmarks of its own; say what to look for with --landmark FILE",
+            input.given
+        )));
+    }
+    if args.inputs.len() > 1 && inputs.iter().all(|(_, frames)| frames.size_hint().0 == 1) {
+        console.note(
+            "note: every input is one picture; quote a glob to have its pictures followed as one sequence",
+        );
+    }
+    let frames = inputs.iter().map(|(_, frames)| frames.size_hint().0 as u64).sum();
+    let mut tally = Tally::default();
+    let mut writer =
+        RowWriter::new(args.format.into(), Console::results()).context("cannot write the table")?;
+    let bar = console.progress(frames, "registering");
+    let times = register(inputs, &job, |input, event| -> anyhow::Result<()> {
+        bar.inc(1);
+        match event {
+            Event::Lost(lost) => bar.suspend(|| tally.lose(console, &lost)),
+            Event::Registered { frame, camera, outcome } => {
+                tally.count(&outcome);
+                let key = FrameKey { input: &input.given, frame, camera: camera.as_deref() };
+                for row in rows(key, &outcome) {
+                    writer.write(&row)?;
+                }
+            }
+        }
+        Ok(())
+    })?;
+    bar.finish_and_clear();
+    writer.finish().context("cannot write the table")?;
+    args.write_stats(&times)?;
+    Ok(tally.ending(console))
+}
+
+fn open_inputs(given: &[String]) -> Result<Vec<(Input, Frames)>, Failure> {
+    let open = |given: &String| {
+        let input = Input::parse(given)?;
+        let frames = input.open()?;
+        Ok((input, frames))
+    };
+    given.iter().map(open).collect::<Result<_, InputError>>().or_usage()
+}
+
+impl Args {
+    fn job(&self) -> Result<Job, Failure> {
+        Ok(Job {
+            landmarks: match self.landmarks.as_slice() {
+                [] => None,
+                files => Some(Arc::new(read_landmark_set(files).or_usage()?)),
+            },
+            options: FollowOptions {
+                mode: self.mode.into(),
+                prediction: self.prediction.into(),
+                shape_veto: if self.require_shape { ShapeVeto::Required } else { ShapeVeto::Off },
+                ..FollowOptions::default()
+            },
+            threads: self
+                .threads
+                .or_else(|| std::thread::available_parallelism().ok())
+                .unwrap_or(NonZeroUsize::MIN),
+            timing: if self.stats.is_some() { Timing::On } else { Timing::Off },
+        })
+    }
+
+    fn write_stats(&self, times: &StageTimes) -> anyhow::Result<()> {
+        let Some(path) = &self.stats else { return Ok(()) };
+        let text = format!("{:#}\n", times.summary());
+        std::fs::write(path, text).with_context(|| format!("cannot write `{}`", path.display()))
+    }
+}
