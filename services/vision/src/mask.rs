@@ -8,6 +8,7 @@ mod boxes;
 mod exact;
 mod lane;
 mod lanes;
+mod sieve;
 mod verdict;
 
 pub use lanes::Lanes;
@@ -21,12 +22,19 @@ use crate::statistics::Acceptance;
 
 use exact::{Area, BLOCK_PX, Question, Scratch};
 use lane::{MEDIUM_SAMPLES, Medium, NARROW_SAMPLES, Narrow, Wide};
+use sieve::{Levels, Mesh, Sieve};
+
+/// Above this share of blocks that may match, one pass over the whole region is cheaper than many small areas.
+const DENSE_SHARE: f64 = 0.25;
 
 /// Finds masks; keeps its memory from one to the next.
 #[derive(Default)]
 pub struct Masker {
     lanes: Lanes,
     accepted: Vec<Acceptance>,
+    levels: Vec<Levels>,
+    sieve: Sieve,
+    areas: Vec<Area>,
     narrow: Scratch<Narrow>,
     medium: Scratch<Medium>,
     wide: Scratch<Wide>,
@@ -39,7 +47,8 @@ impl Masker {
         Self { lanes, ..Self::default() }
     }
 
-    /// Makes `mask` the mask of `landmark` on `grid`.
+    /// Makes `mask` the mask of `landmark` on `grid`. The stage of the statistics finds out where windows may match at
+    /// all, that of the mask tests those exactly.
     ///
     /// # Panics
     /// When the grid's region does not lie inside the frame.
@@ -51,19 +60,13 @@ impl Masker {
         mask: &mut BitMask,
         probe: &mut P,
     ) {
+        probe.begin(Stage::Statistics);
         mask.reset(grid.mask_width(), grid.mask_height());
         self.accept(grid, landmark);
-        if self.accepted.is_empty() {
-            return;
-        }
-        let everywhere = Area { rows: 0..mask.height(), blocks: 0..grid.region().width.div_ceil(BLOCK_PX) };
-        let question = Question { frame, grid, accepted: &self.accepted };
+        self.find_areas(frame, grid);
+        probe.end(Stage::Statistics);
         probe.begin(Stage::Mask);
-        match grid.samples() {
-            ..=NARROW_SAMPLES => self.lanes.test_exactly(&question, &everywhere, &mut self.narrow, mask),
-            ..=MEDIUM_SAMPLES => self.lanes.test_exactly(&question, &everywhere, &mut self.medium, mask),
-            _ => self.lanes.test_exactly(&question, &everywhere, &mut self.wide, mask),
-        }
+        self.test_areas(frame, grid, mask);
         probe.end(Stage::Mask);
     }
 
@@ -71,6 +74,37 @@ impl Masker {
         let accepted = |shade| Acceptance::new(shade, &landmark.tolerance, grid.samples());
         self.accepted.clear();
         self.accepted.extend(landmark.shades.iter().filter_map(accepted));
+    }
+
+    /// Where windows may match.
+    fn find_areas(&mut self, frame: &Frame, grid: &DoubledGrid) {
+        self.areas.clear();
+        if self.accepted.is_empty() {
+            return;
+        }
+        if let Some(mesh) = Mesh::new(grid.window()) {
+            let levels = |accepted| Levels::new(accepted, grid.samples(), mesh);
+            self.levels.clear();
+            self.levels.extend(self.accepted.iter().filter_map(levels));
+            self.lanes.sift(&mut self.sieve, frame, grid, mesh, &self.levels);
+            if self.sieve.alive_share() <= DENSE_SHARE {
+                self.sieve.areas(mesh, grid.mask_height(), &mut self.areas);
+                return;
+            }
+        }
+        let blocks = grid.region().width.div_ceil(BLOCK_PX);
+        self.areas.push(Area { rows: 0..grid.mask_height(), blocks: 0..blocks });
+    }
+
+    fn test_areas(&mut self, frame: &Frame, grid: &DoubledGrid, mask: &mut BitMask) {
+        let question = Question { frame, grid, accepted: &self.accepted };
+        for area in &self.areas {
+            match grid.samples() {
+                ..=NARROW_SAMPLES => self.lanes.test_exactly(&question, area, &mut self.narrow, mask),
+                ..=MEDIUM_SAMPLES => self.lanes.test_exactly(&question, area, &mut self.medium, mask),
+                _ => self.lanes.test_exactly(&question, area, &mut self.wide, mask),
+            }
+        }
     }
 }
 
@@ -110,7 +144,8 @@ mod tests {
             let pixel = |x, y| colours[usize::from(x > edge.0) + usize::from(y > edge.1)];
             let rgb = (0..height).flat_map(|y| (0..width).flat_map(move |x| pixel(x, y)).collect::<Vec<_>>());
             let mut noisy = || if noise == 0 { 0 } else { next() % noise };
-            let rgb = rgb.collect::<Vec<_>>().into_iter().map(|level| level.saturating_add(noisy())).collect();
+            let rgb =
+                rgb.collect::<Vec<_>>().into_iter().map(|level| level.saturating_add(noisy())).collect();
             Frame::from_rgb(width, height, rgb).unwrap()
         })
     }

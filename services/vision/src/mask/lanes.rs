@@ -6,9 +6,12 @@
 #![allow(unsafe_code, reason = "calling a function compiled for instructions that were detected")]
 
 use crate::bitmask::BitMask;
+use crate::doubled_grid::DoubledGrid;
+use crate::frame::Frame;
 
 use super::exact::{self, Area, Question, Scratch};
 use super::lane::Precision;
+use super::sieve::{Levels, Mesh, Sieve};
 
 /// A set of vector instructions that this processor has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +76,38 @@ impl Lanes {
             Set::Avx512 => unsafe { exact_avx512(question, area, scratch, mask) },
         }
     }
+
+    /// [`Sieve::sift`] with these instructions.
+    pub(super) fn sift(
+        self,
+        sieve: &mut Sieve,
+        frame: &Frame,
+        grid: &DoubledGrid,
+        mesh: Mesh,
+        levels: &[Levels],
+    ) {
+        match self.0 {
+            Set::Baseline => sieve.sift(frame, grid, mesh, levels),
+            // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx2 => unsafe { sift_avx2(sieve, frame, grid, mesh, levels) },
+            // SAFETY: as above.
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx512 => unsafe { sift_avx512(sieve, frame, grid, mesh, levels) },
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2")]
+fn sift_avx2(sieve: &mut Sieve, frame: &Frame, grid: &DoubledGrid, mesh: Mesh, levels: &[Levels]) {
+    sieve.sift(frame, grid, mesh, levels);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512dq,bmi1,bmi2")]
+fn sift_avx512(sieve: &mut Sieve, frame: &Frame, grid: &DoubledGrid, mesh: Mesh, levels: &[Levels]) {
+    sieve.sift(frame, grid, mesh, levels);
 }
 
 #[cfg(target_arch = "x86_64")]
