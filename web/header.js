@@ -18,7 +18,7 @@ export function items() {
   }
   return [
     ...(status.leader ? [leader(status.leader)] : []),
-    ...cameras(),
+    ...(status.cameras ? cameras() : []),
     ...(status.router ? [router(status.router)] : []),
     ...(status.recorder ? [recorder(status.recorder)] : []),
     { name: "Service", level: "good", words: `up ${duration(status.uptime_s)}, version ${status.version}` },

@@ -29,10 +29,14 @@ export function showLandmarks() {
   for (const one of all) fillRow(/** @type {HTMLTableRowElement} */ (rows.get(one.key)), one, ageMs);
   byId("landmarks").hidden = all.length === 0;
   byId("landmark-none").hidden = all.length > 0;
+  setText(byId("landmark-none"), known.status?.leader
+    ? "No landmark is in force: none has been received from the leader."
+    : "No landmark is published.");
   const isOld = ageMs !== null && ageMs > STALE_AFTER_MS;
   const measured = isOld ? 0 : all.filter((one) => one.entry.result === "measured").length;
   const version = known.version ? ` · set ${known.version.epoch}.${known.version.version}` : "";
-  setText(byId("landmark-facts"), `${measured} of ${all.length} measured${version}`);
+  const count = known.status?.cameras ? `${measured} of ${all.length} measured` : `${all.length} published`;
+  setText(byId("landmark-facts"), count + version);
 }
 
 /** @param {string} key */
@@ -67,20 +71,24 @@ function fillRow(row, { landmark, entry, several }, ageMs) {
   const comparison = compare(landmark, entry.observed ?? entry.miss?.observed, entry.gain);
   const shade = comparison.shades > 1 ? ` · shade ${comparison.shade} of ${comparison.shades}` : "";
   setText(name.children[1], `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}`);
-  fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry, ageMs);
+  fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry, ageMs, landmark.revision);
   comparison.mean.forEach((one, index) => fillStatistic(mean.children[0].children[index], one));
   comparison.variance.forEach((one, index) => fillStatistic(variance.children[0].children[index], one));
   fillFacts(facts.firstElementChild, entry);
 }
 
-/** @param {HTMLElement} state @param {any} entry @param {number | null} ageMs */
-function fillResult(state, entry, ageMs) {
-  if (entry.result !== null && ageMs !== null && ageMs > STALE_AFTER_MS) {
-    const what = entry.result === "measured" ? "last measured" : "last looked for in vain";
-    showState(state, "warn", `not now: ${what} ${ago(ageMs / 1000)}`);
-  } else if (entry.result === null) showState(state, "unknown", "not looked for yet");
-  else if (entry.result === "measured") showState(state, "good", "measured");
-  else showState(state, "bad", `missed: ${missInWords(entry.result, entry.miss)}`);
+/** @param {HTMLElement} state @param {any} entry @param {number | null} ageMs @param {number} revision */
+function fillResult(state, entry, ageMs, revision) {
+  const measured = entry.result === "measured";
+  if (entry.result === null) {
+    showState(state, "unknown", known.status?.cameras ? "not looked for yet" : `published, revision ${revision}`);
+  } else if (ageMs !== null && ageMs > STALE_AFTER_MS) {
+    showState(state, "warn", `not now: last ${measured ? "measured" : "missed"} ${ago(ageMs / 1000)}`);
+  } else if (measured) {
+    showState(state, "good", "measured");
+  } else {
+    showState(state, "bad", `missed: ${missInWords(entry.result, entry.miss)}`);
+  }
 }
 
 /** @param {Element} element @param {import("./statistics.js").Comparison} one */
@@ -89,8 +97,9 @@ function fillStatistic(element, one) {
   setText(expected, `${one.expected.toFixed(0)} ± ${one.tolerance.toFixed(0)}`);
   setText(observed, figure(one.observed, 0));
   const state = /** @type {HTMLElement} */ (verdict);
-  if (one.within === null || one.offBy === null) showState(state, "unknown", MISSING);
-  else if (one.within) showState(state, "good", "within");
+  state.hidden = one.within === null;
+  if (one.offBy === null) return;
+  if (one.within) showState(state, "good", "within");
   else showState(state, "bad", `${Math.max(1, Math.abs(one.offBy)).toFixed(0)} ${one.offBy > 0 ? "over" : "under"}`);
 }
 

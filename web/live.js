@@ -25,6 +25,8 @@ const keptCameras = new Map();
 let shown = null;
 /** Times of the last pictures, for the rate. @type {number[]} */
 let times = [];
+/** Width of the frames themselves: that of the first picture, which is asked for without a width. */
+let frameWidthPx = 0;
 let loop = new AbortController();
 
 /** Starts, or starts anew with other layers or another camera. */
@@ -42,6 +44,7 @@ async function run(camera, stop) {
       const picture = await nextPicture(camera, [...known.layersOn], after, wantedWidth(), stop);
       if (stop.aborted) return;
       after = picture.sequence;
+      frameWidthPx ||= picture.bitmap.width;
       draw(picture);
     } catch (error) {
       if (stop.aborted) return;
@@ -52,11 +55,11 @@ async function run(camera, stop) {
   }
 }
 
-/** No more pixels than the screen shows: the service sends less and the browser scales less. */
+/** No more pixels than the screen shows: the service sends less and the browser scales less. 0 is the frame's own. */
 function wantedWidth() {
   const shownPx = Math.round(byId("stage").clientWidth * devicePixelRatio);
-  const widths = [320, 480, 640, 960, 1280, 1920];
-  return widths.find((width) => width >= shownPx) ?? 0;
+  const width = [320, 480, 640, 960, 1280, 1920].find((width) => width >= shownPx) ?? 0;
+  return width < frameWidthPx ? width : 0;
 }
 
 /** @param {number} ms @param {AbortSignal} stop */
@@ -149,6 +152,7 @@ function showCameraChoice() {
     button.addEventListener("change", () => {
       known.camera = id;
       shown = null;
+      frameWidthPx = 0;
       restartLive();
     });
     return make("label", "", button, ` ${id}`);

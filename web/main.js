@@ -1,6 +1,7 @@
 // Starts the page: what is asked when, and what is shown how often.
 
 import { Problem, followEvents, getJson } from "./api.js";
+import { byId } from "./dom.js";
 import { showFleet } from "./fleet.js";
 import { showHeader } from "./header.js";
 import { showLandmarks } from "./landmarks.js";
@@ -21,6 +22,7 @@ async function askStatus() {
   try {
     learnStatus(await getJson("/api/v1/status"));
     chooseCamera();
+    showSections();
     if (performance.now() - landmarksAskedAt > 2000) await askLandmarks();
   } catch {
     // Silence is what the header shows; there is nothing else to do than to ask again.
@@ -60,6 +62,13 @@ function chooseCamera() {
   if (known.camera && known.cameras.has(known.camera)) return;
   known.camera = known.cameras.keys().next().value ?? null;
   restartLive();
+}
+
+/** A leader has no cameras of its own and may have no recorder: what a service does not report is not shown. */
+function showSections() {
+  for (const [field, sections] of Object.entries({ cameras: ["live", "plots-section"], recorder: ["recorder-section"] })) {
+    for (const section of sections) byId(section).hidden = known.status[field] === undefined;
+  }
 }
 
 function show() {

@@ -23,7 +23,7 @@ export async function startService(state, port, framesDir) {
   const timer = setInterval(() => {
     if (!world.tick()) return;
     for (const reader of readers) {
-      for (const camera of world.status().cameras) reader.write(`id: ${world.sequence}\nevent: camera\ndata: ${JSON.stringify(camera)}\n\n`);
+      for (const camera of world.status().cameras ?? []) reader.write(`id: ${world.sequence}\nevent: camera\ndata: ${JSON.stringify(camera)}\n\n`);
     }
     for (const answer of waiting) answer();
     waiting.clear();

@@ -1,6 +1,6 @@
 // The states that the page must show well, each as the JSON that a follower would give.
 
-export const STATES = ["well", "no-camera", "stale", "no-landmark", "one-lost", "recording-failed", "thirty", "read-only", "leader-gone"];
+export const STATES = ["well", "no-camera", "stale", "no-landmark", "one-lost", "recording-failed", "thirty", "read-only", "leader-gone", "leader"];
 
 const RED = { mean: [181, 52, 47], variance: [310, 95, 88] };
 const BLUE = { mean: [44, 71, 158], variance: [70, 102, 240] };
@@ -65,7 +65,9 @@ export function makeWorld(state) {
     },
     landmarks: () => ({ version: { epoch: 3, version: 7 }, landmarks: set }),
     fleet: () => ({ vehicles: [{ vehicle: "lead", role: "leader", age_s: 0.4 }, { vehicle: "follower-1", role: "follower", age_s: 0.1 }] }),
-    status: () => ({
+    status: () => state === "leader" ? {
+      vehicle: "lead", role: "leader", version: "0.1.0", uptime_s: 4021, access: "open", router: { connected: true }, landmarks: set.length,
+    } : ({
       vehicle: "follower-1", role: "follower", version: "0.1.0", uptime_s: 4021 + (Date.now() - startedAt) / 1000,
       access: state === "read-only" ? "read_only" : "open",
       leader: { vehicle: "lead", present: state !== "leader-gone", age_s: state === "leader-gone" ? 48 : 0.4 },
