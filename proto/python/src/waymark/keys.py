@@ -32,6 +32,11 @@ def image(fleet: str, vehicle_name: str, camera: str) -> str:
     return _camera(fleet, vehicle_name, camera, "image")
 
 
+def calibration(fleet: str, vehicle_name: str, camera: str) -> str:
+    """How a camera sees, ``foxglove.CameraCalibration``."""
+    return _camera(fleet, vehicle_name, camera, "calibration")
+
+
 def registration(fleet: str, vehicle_name: str, camera: str) -> str:
     """What each frame said about every landmark, ``waymark.v1.Registration``."""
     return _camera(fleet, vehicle_name, camera, "registration")

@@ -11,7 +11,6 @@ Samples wait in a bounded queue; when the reader is slower than the vehicles the
 """
 
 import queue
-from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from types import TracebackType
@@ -127,8 +126,7 @@ class Landmarks(Stream[Change]):
         """The set as it stands after the change that was yielded last."""
 
     def __iter__(self) -> Iterator[Change]:
-        changes = deque(self.view.on_whole_set(self._fetch()))
-        yield from changes
+        yield from self.view.on_whole_set(self._fetch())
         for sample, _ in self.samples():
             yield from self._on_sample(sample)
 
