@@ -49,14 +49,16 @@ export function keepToken(token) {
 
 /**
  * The next picture that is not `after`; the geometry drawn into it is that of the same frame.
- * @param {string} camera @param {string[]} layers @param {number | null} after @param {number} width @param {AbortSignal} stop
+ * @param {string} camera
+ * @param {{layers: string[], after: number | null, format: "jpg" | "png", widthPx: number}} wanted `png` keeps every pixel
+ * @param {AbortSignal} stop
  * @returns {Promise<Picture>}
  */
-export async function nextPicture(camera, layers, after, width, stop) {
+export async function nextPicture(camera, { layers, after, format, widthPx }, stop) {
   const query = new URLSearchParams({ layers: layers.join(",") });
   if (after !== null) query.set("after", String(after));
-  if (width > 0) query.set("width", String(width));
-  const path = `/api/v1/cameras/${encodeURIComponent(camera)}/overlay.jpg?${query}`;
+  if (widthPx > 0) query.set("width", String(widthPx));
+  const path = `/api/v1/cameras/${encodeURIComponent(camera)}/overlay.${format}?${query}`;
   const signal = AbortSignal.any([stop, AbortSignal.timeout(PATIENCE_MS + 5000)]);
   const response = await fetch(path, { signal });
   if (!response.ok) throw await problem(response);

@@ -27,25 +27,41 @@ let shown = null;
 let times = [];
 /** Width of the frames themselves: that of the first picture, which is asked for without a width. */
 let frameWidthPx = 0;
+let held = false;
 let loop = new AbortController();
 
-/** Starts, or starts anew with other layers or another camera. */
+/** Starts, or starts anew with other layers or another camera; a held picture gives way to one later frame. */
 export function restartLive() {
   loop.abort();
+  times = [];
   loop = new AbortController();
   if (known.camera && !document.hidden) void run(known.camera, loop.signal);
 }
 
+/** Whether the picture stands still. */
+export function isHeld() {
+  return held;
+}
+
+/** Holds the next frame, every pixel of it, or lets the picture run again. @param {boolean} wanted */
+export function hold(wanted) {
+  held = wanted;
+  restartLive();
+}
+
 /** @param {string} camera @param {AbortSignal} stop */
 async function run(camera, stop) {
-  let after = null;
+  let after = shown?.sequence ?? null;
   while (!stop.aborted) {
     try {
-      const picture = await nextPicture(camera, [...known.layersOn], after, wantedWidth(), stop);
+      const format = held ? "png" : "jpg";
+      const widthPx = held ? 0 : wantedWidth();
+      const picture = await nextPicture(camera, { layers: [...known.layersOn], after, format, widthPx }, stop);
       if (stop.aborted) return;
       after = picture.sequence;
       frameWidthPx ||= picture.bitmap.width;
       draw(picture);
+      if (held) return;
     } catch (error) {
       if (stop.aborted) return;
       if (error instanceof Problem) explain(error.message);
@@ -57,6 +73,7 @@ async function run(camera, stop) {
 
 /** No more pixels than the screen shows: the service sends less and the browser scales less. 0 is the frame's own. */
 function wantedWidth() {
+  if (byId("stage").classList.contains("zoomed")) return 0;
   const shownPx = Math.round(byId("stage").clientWidth * devicePixelRatio);
   const width = [320, 480, 640, 960, 1280, 1920].find((width) => width >= shownPx) ?? 0;
   return width < frameWidthPx ? width : 0;
@@ -80,13 +97,15 @@ function draw(picture) {
   if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
     canvas.width = bitmap.width;
     canvas.height = bitmap.height;
+    canvas.dispatchEvent(new Event("framesize"));
   }
-  canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
+  canvas.getContext("2d", { willReadFrequently: true })?.drawImage(bitmap, 0, 0);
   shown = { sequence: picture.sequence, ageMs: picture.ageMs, at: performance.now(), width: bitmap.width, height: bitmap.height };
   bitmap.close();
   canvas.dataset.sequence = String(picture.sequence);
   times.push(shown.at);
   byId("stage").classList.remove("old");
+  byId("stage").classList.toggle("held", held);
   byId("picture-state").hidden = true;
 }
 
@@ -104,10 +123,10 @@ export function showLive() {
   times = times.filter((time) => now - time < 2000);
   if (shown) {
     const ageMs = shown.ageMs + now - shown.at;
-    if (ageMs > STALE_AFTER_MS) explain(`Not live: this picture is ${duration(ageMs / 1000)} old`);
+    if (ageMs > STALE_AFTER_MS && !held) explain(`Not live: this picture is ${duration(ageMs / 1000)} old`);
     const rate = times.length > 1 ? ((times.length - 1) * 1000) / (times[times.length - 1] - times[0]) : null;
     setText(byId("frame-facts"),
-      `frame ${shown.sequence} · ${figure(rate, 0, "fps shown")} · ${shown.width} × ${shown.height} px`);
+      `frame ${shown.sequence} · ${held ? "held" : figure(rate, 0, "fps shown")} · ${shown.width} × ${shown.height} px`);
   }
   setAttribute(byId("picture"), "aria-label", describe());
   showCameraChoice();
@@ -118,7 +137,7 @@ function describe() {
   if (!camera || !shown) return "No picture yet";
   const seen = (camera.landmarks ?? []).filter((/** @type {any} */ entry) => entry.result === "measured");
   const names = [...new Set(seen.map((/** @type {any} */ entry) => entry.id))].join(", ");
-  return `Live picture of camera ${camera.id}; ${names ? `measured: ${names}` : "no landmark measured"}`;
+  return `${held ? "Held" : "Live"} picture of camera ${camera.id}; ${names ? `measured: ${names}` : "no landmark measured"}`;
 }
 
 /** Offers the layers that the service can draw. */

@@ -8,6 +8,7 @@ import { showLandmarks } from "./landmarks.js";
 import { restartLive, showLayers, showLive } from "./live.js";
 import { watchChanges } from "./log.js";
 import { drawPlots, samplePlots } from "./plots.js";
+import { showProbe, startProbe } from "./probe.js";
 import { showRecorder } from "./recorder.js";
 import { known, learnCamera, learnStatus } from "./state.js";
 
@@ -76,6 +77,7 @@ function show() {
   watchChanges();
   if (document.hidden) return;
   showLive();
+  showProbe();
   showLandmarks();
   showRecorder();
   drawPlots();
@@ -88,6 +90,7 @@ followEvents(
   },
   (following) => (known.following = following),
 );
+startProbe();
 void askStatus();
 void askLayers();
 void askFleet();

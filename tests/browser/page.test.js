@@ -124,3 +124,25 @@ test("plots share one cursor, moved by pointer or keys", async () => {
   assert.deepEqual(complaints, []);
   await close();
 });
+
+test("a held picture stands still, steps, zooms, and gives its pixels and their six statistics", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  const facts = page.locator("#frame-facts");
+  const heldFrame = async () => {
+    await facts.getByText(/held/).waitFor();
+    return page.locator("#picture").getAttribute("data-sequence");
+  };
+  await page.getByRole("button", { name: "Hold" }).click();
+  const first = await heldFrame();
+  await page.getByRole("button", { name: "Next frame" }).click();
+  await page.waitForFunction((first) => document.querySelector("#picture")?.dataset.sequence !== first, first);
+  assert.ok(Number(await heldFrame()) > Number(first));
+  await page.getByLabel("Zoom").selectOption("4");
+  await page.locator("#picture").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.locator("#probe").getByText(/Pixel \d+\.5, \d+\.5: R \d+, G \d+, B \d+ levels\. Window \d+ × \d+ px: mean/).waitFor();
+  await page.getByRole("button", { name: "Hold" }).click();
+  await facts.getByText(/fps shown/).waitFor();
+  assert.deepEqual(complaints, []);
+  await close();
+});

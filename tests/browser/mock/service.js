@@ -58,7 +58,7 @@ export async function startService(state, port, framesDir) {
   };
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url ?? "/", "http://localhost");
-    if (pathname.endsWith("/overlay.jpg")) {
+    if (/\/overlay\.(jpg|png)$/.test(pathname)) {
       if (world.refusal()) setTimeout(() => picture(response), 500);
       else waiting.add(() => picture(response));
     } else if (routes[pathname]) routes[pathname](response);
