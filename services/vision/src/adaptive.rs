@@ -6,6 +6,7 @@
 
 mod candidate;
 pub(crate) mod choose;
+mod face;
 pub(crate) mod likeness;
 pub(crate) mod noise;
 pub(crate) mod palette;

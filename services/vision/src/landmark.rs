@@ -65,6 +65,12 @@ impl ShapeClass {
     pub const ALL: [Self; 6] =
         [Self::Any, Self::Block, Self::Rectangle, Self::Octagon, Self::Triangle, Self::Circle];
 
+    /// Whether objects of this class carry lettering and a border that belong to them, as road signs do.
+    #[must_use]
+    pub const fn is_sign(self) -> bool {
+        matches!(self, Self::Rectangle | Self::Octagon | Self::Triangle | Self::Circle)
+    }
+
     /// The name used on the command line and on pages.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -143,11 +143,16 @@ pub fn learn(regions: &[(&Frame, RectPx)], options: &LearnOptions) -> Result<Lan
         Template::Object => windows::statistics(&samples, window_px),
         Template::Exact => windows::whole(&samples),
     };
+    let mut shades = fitted.shades;
+    if options.shape.is_sign() && options.template == Template::Object {
+        shades.truncate(MAX_SHADES - 1);
+        shades.extend(object::far_view(regions, &shades));
+    }
     Ok(Landmark {
         id: options.id.clone(),
         revision: 1,
         window_px,
-        shades: fitted.shades,
+        shades,
         tolerance: match options.tolerance {
             Tolerance::Fitted => fitted.tolerance,
             Tolerance::Given(tolerance) => tolerance,

@@ -1,22 +1,30 @@
 //! Objects that may be the landmark, in a part of the frame.
 
 use super::choose::{self, Form};
+use super::face::LETTERING_BRIGHTNESS;
 use super::likeness::Likeness;
 use super::patch::Patch;
 use super::segment;
-use super::soft_edge;
+use super::soft_edge::{self, Edge};
 use crate::bitmask::BitMask;
 use crate::components::{Component, Components};
 use crate::frame::Frame;
 use crate::geometry::{PointPx, RectPx};
-use crate::landmark::{ColorStats, Landmark, ShapeClass};
+use crate::landmark::{ColorStats, Landmark};
 
 /// Fewer like pixels than this are no seed.
 const LEAST_SEED_PX: u64 = 5;
 /// Parts of a sign that lettering separates lie within this many sizes of its largest part.
 const PARTS_REACH: f32 = 0.3;
 
+/// Signs whose parts fill this much of their hull are filled.
+const FILLED_SOLIDITY: f32 = 0.7;
+/// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
+/// apart on small signs.
+const PALEST: [f32; 3] = [0.3, 0.45, 0.62];
+
 /// What is searched for and where.
+#[derive(Clone, Copy)]
 pub(crate) struct Search<'a> {
     pub(crate) frame: &'a Frame,
     pub(crate) region: RectPx,
@@ -57,6 +65,21 @@ impl Candidate {
 
 /// The objects in the searched region that look like the landmark, best first.
 pub(crate) fn candidates(search: &Search<'_>) -> Vec<Candidate> {
+    let mut found = match search.likeness.face() {
+        None => from_seeds(search),
+        Some(_) => PALEST
+            .iter()
+            .flat_map(|&palest| {
+                let likeness = search.likeness.with_palest(palest);
+                from_seeds(&Search { likeness: &likeness, ..*search })
+            })
+            .collect(),
+    };
+    found.sort_by(|a, b| b.score.total_cmp(&a.score));
+    without_overlaps(found)
+}
+
+fn from_seeds(search: &Search<'_>) -> Vec<Candidate> {
     let mask = like_pixels(search);
     let mut components = Components::default();
     components.find(&mask);
@@ -69,14 +92,12 @@ pub(crate) fn candidates(search: &Search<'_>) -> Vec<Candidate> {
             (f64::from(search.region.x) + x + 0.5) as f32,
             (f64::from(search.region.y) + y + 0.5) as f32,
         );
-        if found.iter().any(|known| known.covers(centre)) {
-            continue;
+        if !found.iter().any(|known| known.covers(centre)) {
+            let seed = seed_patch(search, &components, seed, &seeds);
+            found.extend(candidate(search, &seed));
         }
-        let seed = seed_patch(search, &components, seed, &seeds);
-        found.extend(candidate(search, &seed));
     }
-    found.sort_by(|a, b| b.score.total_cmp(&a.score));
-    without_overlaps(found)
+    found
 }
 
 /// The pixels of the region that may be the landmark's.
@@ -100,7 +121,7 @@ fn like_pixels(search: &Search<'_>) -> BitMask {
 
 /// A component with room around it; of a sign also the parts that lettering separates from it.
 fn seed_patch(search: &Search<'_>, components: &Components, seed: &Component, all: &[&Component]) -> Patch {
-    let reach = if is_sign(search.landmark.shape) {
+    let reach = if search.landmark.shape.is_sign() {
         (PARTS_REACH * (seed.width().max(seed.height())) as f32) as u32
     } else {
         0
@@ -132,14 +153,25 @@ fn seed_patch(search: &Search<'_>, components: &Components, seed: &Component, al
 }
 
 fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
-    let object = segment::object(search.frame, seed, search.likeness)?;
-    let (centroid, area_px2) = soft_edge::centroid_and_area(search.frame, &object)?;
-    let form = Form::of(&object);
+    let seen = segment::object(search.frame, seed, search.likeness)?;
+    let form = Form::of(&seen);
+    let sign = search.landmark.shape.is_sign() && form.solidity >= FILLED_SOLIDITY;
+    let object = if sign { seen.convex() } else { seen };
+    let edge = if sign { border(search, &object) } else { Edge::Plain };
+    let (centroid, area_px2) = soft_edge::centroid_and_area(search.frame, &object, edge)?;
     let (window_px, observed) = choose::best_window(search, &object, area_px2)?;
     let score = choose::score(search, &object, &form, area_px2, &observed);
     let cut = object.touches_border(search.frame.width(), search.frame.height());
     let gain = search.likeness.nearest(observed.mean).gain;
     Some(Candidate { object, centroid, area_px2, gain, observed, window_px, cut, score })
+}
+
+/// A sign's border: light and without a tint, wider on larger signs.
+fn border(search: &Search<'_>, object: &Patch) -> Edge {
+    let brightest = search.landmark.shades.iter().flat_map(|shade| shade.mean).fold(0.0, f32::max);
+    let level = (LETTERING_BRIGHTNESS * search.gain * brightest).min(255.0);
+    let size_px = (object.count() as f32).sqrt();
+    Edge::Bordered { color: [level; 3], width_px: (0.06 * size_px).round().clamp(1.0, 6.0) as i32 }
 }
 
 fn without_overlaps(found: Vec<Candidate>) -> Vec<Candidate> {
@@ -150,9 +182,4 @@ fn without_overlaps(found: Vec<Candidate>) -> Vec<Candidate> {
         }
     }
     kept
-}
-
-/// Whether lettering and a border belong to objects of this shape.
-fn is_sign(shape: ShapeClass) -> bool {
-    matches!(shape, ShapeClass::Octagon | ShapeClass::Rectangle | ShapeClass::Triangle | ShapeClass::Circle)
 }

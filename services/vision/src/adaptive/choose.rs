@@ -6,6 +6,8 @@ use crate::landmark::{ColorStats, ShapeClass};
 
 /// An object of this area is as likely a speck as a landmark, px².
 const SPECK_AREA_PX2: f32 = 24.0;
+/// Part of a sign's own variance at which an object is as likely plain as lettered.
+const PLAIN_FACE: f32 = 0.12;
 /// The largest window, samples of the doubled grid.
 const LARGEST_WINDOW_2X: i32 = 48;
 
@@ -82,20 +84,24 @@ pub(crate) fn best_window(search: &Search<'_>, object: &Patch, area_px2: f32) ->
 }
 
 fn window_stats(search: &Search<'_>, object: &Patch, (x, y): (i32, i32), side: i32) -> ColorStats {
-    let (mut sum, mut squares) = ([0.0_f32; 3], [0.0_f32; 3]);
-    for v in y..y + side {
-        for u in x..x + side {
-            let pixel = search.frame.pixel(object.rect.x + u as u32, object.rect.y + v as u32);
-            for c in 0..3 {
-                let level = f32::from(pixel[c]);
-                sum[c] += level;
-                squares[c] += level * level;
-            }
+    stats(search, object, (y..y + side).flat_map(|v| (x..x + side).map(move |u| (u, v))))
+}
+
+/// Mean and population variance of these places of the object's patch.
+fn stats(search: &Search<'_>, object: &Patch, places: impl Iterator<Item = (i32, i32)>) -> ColorStats {
+    let (mut n, mut sum, mut squares) = (0.0_f32, [0.0_f32; 3], [0.0_f32; 3]);
+    for (x, y) in places {
+        let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
+        for c in 0..3 {
+            let level = f32::from(pixel[c]);
+            sum[c] += level;
+            squares[c] += level * level;
         }
+        n += 1.0;
     }
-    let n = (side * side) as f32;
-    let mean = sum.map(|s| s / n);
-    ColorStats { mean, variance: std::array::from_fn(|c| (squares[c] / n - mean[c] * mean[c]).max(0.0)) }
+    let mean = sum.map(|s| s / n.max(1.0));
+    let variance = std::array::from_fn(|c| (squares[c] / n.max(1.0) - mean[c] * mean[c]).max(0.0));
+    ColorStats { mean, variance }
 }
 
 /// How much the object looks like the landmark, 0..1.
@@ -106,13 +112,27 @@ pub(crate) fn score(
     area_px2: f32,
     observed: &ColorStats,
 ) -> f32 {
-    let color = search.likeness.nearest(observed.mean);
     let off = |value: f32, sigma: f32| (-0.5 * (value / sigma).powi(2)).exp();
-    let light = off((color.gain / search.gain).max(1e-3).ln(), 0.25);
-    let hue = off(color.excess, 0.7);
     let size = area_px2 / (area_px2 + SPECK_AREA_PX2);
-    let texture = off(variance_excess(search, observed), 3.0);
-    hue * light * size * texture * form.suits(search.landmark.shape) * isolation(search, object)
+    let surely = size * form.suits(search.landmark.shape) * isolation(search, object);
+    if let Some(face) = search.likeness.face() {
+        let seen = face.compare(face_pixels(search, object));
+        let light = off((seen.color.gain / search.gain).max(1e-3).ln(), 0.4);
+        let lettered =
+            (seen.lettering.max(0.0) * (1.0 + PLAIN_FACE) / (seen.lettering.max(0.0) + PLAIN_FACE)).min(1.0);
+        return surely * light * off(seen.color.excess, 0.7) * lettered;
+    }
+    let color = search.likeness.nearest(observed.mean);
+    let light = off((color.gain / search.gain).max(1e-3).ln(), 0.25);
+    surely * light * off(color.excess, 0.7) * off(variance_excess(search, observed), 3.0)
+}
+
+/// The pixels of an object without its edge.
+fn face_pixels<'a>(search: &'a Search<'_>, object: &'a Patch) -> impl Iterator<Item = [f32; 3]> + 'a {
+    let inner = object.eroded(1);
+    let inner = if inner.count() >= 9 { inner } else { object.clone() };
+    let pixel = |(x, y): (i32, i32)| search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
+    inner.set_places().map(|at| pixel(at).map(f32::from)).collect::<Vec<_>>().into_iter()
 }
 
 /// By how many tolerances the observed variance exceeds the descriptor's, camera noise taken out.

@@ -1,7 +1,7 @@
 //! Which colours may be the landmark's under the light of the moment.
 
-use crate::landmark::ColorStats;
-use crate::landmark::Landmark;
+use super::face::{self, Face};
+use crate::landmark::{ColorStats, Landmark};
 
 /// The mean tolerance is kept between these, levels: below, JPEG noise defeats it; above, everything matches.
 const TOLERANCE: (f32, f32) = (14.0, 40.0);
@@ -15,6 +15,8 @@ const FOLLOWED_GAIN: f32 = 1.22;
 #[derive(Clone, Debug)]
 pub(crate) struct Likeness {
     cones: Vec<Cone>,
+    /// The face of a lettered sign as a whole, where the descriptor tells it.
+    face: Option<Face>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -60,31 +62,54 @@ impl Likeness {
                 gain: (gain / factor, gain * factor),
             }
         };
-        Self { cones: landmark.shades.iter().map(cone).collect() }
+        let far = face::far_view(landmark);
+        let plain =
+            landmark.shades.iter().enumerate().filter(|(at, _)| Some(*at) != far).map(|(_, shade)| shade);
+        Self { cones: plain.map(cone).collect(), face: far.and_then(|at| Face::of(landmark, at, gain)) }
+    }
+
+    /// The same, but tints paler than `palest` (a part of the pure shade's distance from grey) are not the landmark's.
+    pub(crate) fn with_palest(&self, palest: f32) -> Self {
+        let face = self.face.map(|face| face.with_palest(palest));
+        Self { face, ..self.clone() }
     }
 
     /// Whether a pixel may be the landmark's.
     pub(crate) fn matches(&self, pixel: [u8; 3]) -> bool {
         let color = pixel.map(f32::from);
+        self.face.is_some_and(|face| face.has_tint(color)) || self.matches_shade(color)
+    }
+
+    fn matches_shade(&self, color: [f32; 3]) -> bool {
         self.cones.iter().any(|cone| {
             let gain = cone.gain_of(color);
             (0..3).all(|c| (color[c] - gain * cone.shade[c]).abs() <= cone.tolerance[c])
         })
     }
 
+    /// The face of a lettered sign; `None` of other landmarks.
+    pub(crate) fn face(&self) -> Option<&Face> {
+        self.face.as_ref()
+    }
+
     /// The comparison with the nearest shade.
     pub(crate) fn nearest(&self, color: [f32; 3]) -> Match {
-        let compare = |cone: &Cone| {
-            let gain = cone.gain_of(color);
-            let off = |c: usize| (color[c] - gain * cone.shade[c]).abs() / cone.tolerance[c];
-            Match { gain, excess: off(0).max(off(1)).max(off(2)) }
-        };
         let nothing = Match { gain: 1.0, excess: f32::MAX };
-        self.cones.iter().map(compare).min_by(|a, b| a.excess.total_cmp(&b.excess)).unwrap_or(nothing)
+        self.cones
+            .iter()
+            .map(|cone| cone.compare(color))
+            .min_by(|a, b| a.excess.total_cmp(&b.excess))
+            .unwrap_or(nothing)
     }
 }
 
 impl Cone {
+    fn compare(&self, color: [f32; 3]) -> Match {
+        let gain = self.gain_of(color);
+        let off = |c: usize| (color[c] - gain * self.shade[c]).abs() / self.tolerance[c];
+        Match { gain, excess: off(0).max(off(1)).max(off(2)) }
+    }
+
     fn gain_of(&self, color: [f32; 3]) -> f32 {
         let gain = (0..3).map(|c| color[c] * self.onto_shade[c]).sum::<f32>();
         gain.clamp(self.gain.0, self.gain.1)

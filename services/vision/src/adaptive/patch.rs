@@ -205,6 +205,19 @@ impl Patch {
         hull.into_iter().map(|(u, v)| PointPx::new(x + u as f32, y + v as f32)).collect()
     }
 
+    /// With every pixel set whose centre lies in the convex hull.
+    pub(crate) fn convex(&self) -> Self {
+        let hull = self.hull();
+        let (left, top) = (self.rect.x as f32, self.rect.y as f32);
+        let inside = |x: i32, y: i32| {
+            let (px, py) = (left + x as f32 + 0.5, top + y as f32 + 0.5);
+            hull.iter()
+                .zip(hull.iter().cycle().skip(1))
+                .all(|(a, b)| (b.x - a.x) * (py - a.y) - (b.y - a.y) * (px - a.x) >= 0.0)
+        };
+        Self::from_fn(self.rect, |x, y| self.get(x, y) || (!hull.is_empty() && inside(x, y)))
+    }
+
     /// Whether a set pixel lies on the border of a picture of that size.
     pub(crate) fn touches_border(&self, width: u32, height: u32) -> bool {
         self.set_places().any(|(x, y)| {

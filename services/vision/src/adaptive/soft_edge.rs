@@ -11,18 +11,37 @@ use crate::geometry::PointPx;
 const REACH: i32 = 4;
 /// Object and background nearer than this cannot be told apart by mixing, levels².
 const LEAST_CONTRAST2: f32 = 150.0;
+/// A border nearer than this to the background is not looked for, levels².
+const BORDER_CONTRAST2: f32 = 3600.0;
+
+/// What the edge of an object is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Edge {
+    /// Object next to background.
+    Plain,
+    /// A sign's border of this colour lies between them, at most so many pixels wide.
+    Bordered {
+        /// Colour of the border, levels.
+        color: [f32; 3],
+        /// Greatest width, px.
+        width_px: i32,
+    },
+}
 
 /// Centre of gravity and area of the object with soft edges; `None` of nothing.
-pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch) -> Option<(PointPx, f32)> {
+pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch, edge: Edge) -> Option<(PointPx, f32)> {
     let inside = object.eroded(2);
     let inside = if inside.count() >= 6 { inside } else { object.eroded(1) };
     let inner = object.eroded(1);
-    let outer = object.dilated(1);
-    let beyond = outer.dilated(1);
+    let width_px = match edge {
+        Edge::Plain => 1,
+        Edge::Bordered { width_px, .. } => width_px,
+    };
+    let outer = object.dilated(width_px);
+    let pure = Pure { frame, object, inside: &inside, beyond: &outer.dilated(1) };
     let (mut weight, mut mx, mut my) = (0.0_f64, 0.0_f64, 0.0_f64);
     for (x, y) in outer.set_places() {
-        let share =
-            if inner.get(x, y) { 1.0 } else { covered_share(frame, object, &inside, &beyond, (x, y)) };
+        let share = if inner.get(x, y) { 1.0 } else { pure.covered_share((x, y), edge) };
         weight += f64::from(share);
         mx += f64::from(share) * (f64::from(x) + 0.5);
         my += f64::from(share) * (f64::from(y) + 0.5);
@@ -31,19 +50,58 @@ pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch) -> Option<(PointP
     (weight > 0.0).then(|| (PointPx::new(x as f32, y as f32), weight as f32))
 }
 
-/// The part of an edge pixel that shows the object, 0..1.
-fn covered_share(frame: &Frame, object: &Patch, inside: &Patch, beyond: &Patch, (x, y): (i32, i32)) -> f32 {
-    let hard = if object.get(x, y) { 1.0 } else { 0.0 };
-    let own = local_mean(frame, object, (x, y), |u, v| inside.get(u, v));
-    let other = local_mean(frame, object, (x, y), |u, v| !beyond.get(u, v));
-    let (Some(own), Some(other)) = (own, other) else { return hard };
-    let color = levels(frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32));
-    let (mut along, mut contrast2) = (0.0, 0.0);
-    for c in 0..3 {
-        along += (color[c] - other[c]) * (own[c] - other[c]);
-        contrast2 += (own[c] - other[c]).powi(2);
+/// Where only the object and where only the background shows.
+struct Pure<'a> {
+    frame: &'a Frame,
+    object: &'a Patch,
+    inside: &'a Patch,
+    beyond: &'a Patch,
+}
+
+impl Pure<'_> {
+    /// The part of an edge pixel that shows the object, 0..1.
+    fn covered_share(&self, (x, y): (i32, i32), edge: Edge) -> f32 {
+        let hard = if self.object.get(x, y) { 1.0 } else { 0.0 };
+        let own = local_mean(self.frame, self.object, (x, y), |u, v| self.inside.get(u, v));
+        let other = local_mean(self.frame, self.object, (x, y), |u, v| !self.beyond.get(u, v));
+        let (Some(own), Some(other)) = (own, other) else { return hard };
+        let rect = self.object.rect;
+        let color = levels(self.frame.pixel(rect.x + x as u32, rect.y + y as u32));
+        let plain = share_between(color, own, other).unwrap_or(hard);
+        match edge {
+            Edge::Plain => plain,
+            Edge::Bordered { color: border, .. } => share_of_two(color, own, border, other).unwrap_or(plain),
+        }
     }
-    if contrast2 < LEAST_CONTRAST2 { hard } else { (along / contrast2).clamp(0.0, 1.0) }
+}
+
+/// The part of `own` in a mixture of `own` and `other`; `None` where they are too much alike.
+fn share_between(color: [f32; 3], own: [f32; 3], other: [f32; 3]) -> Option<f32> {
+    let (mixed, contrast) = (minus(color, other), minus(own, other));
+    let contrast2 = dot(contrast, contrast);
+    (contrast2 >= LEAST_CONTRAST2).then(|| (dot(mixed, contrast) / contrast2).clamp(0.0, 1.0))
+}
+
+/// The part of `own` and `border` together in a mixture of both with `other` (least squares); `None` where the
+/// border looks like the background.
+fn share_of_two(color: [f32; 3], own: [f32; 3], border: [f32; 3], other: [f32; 3]) -> Option<f32> {
+    let (p, a, b) = (minus(color, other), minus(own, other), minus(border, other));
+    let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
+    let determinant = aa * bb - ab * ab;
+    if bb < BORDER_CONTRAST2 || determinant < 0.1 * aa * bb {
+        return None;
+    }
+    let of_own = (dot(p, a) * bb - dot(p, b) * ab) / determinant;
+    let of_border = (dot(p, b) * aa - dot(p, a) * ab) / determinant;
+    Some((of_own + of_border).clamp(0.0, 1.0))
+}
+
+fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Mean colour of the pixels around a place for which `pure` holds.

@@ -17,6 +17,10 @@ const FIRST_SCORE: f32 = 0.30;
 const FOLLOWED_PART: f32 = 0.35;
 /// A further object of the same landmark needs this part of the best one's score.
 const FURTHER_PART: f32 = 0.75;
+/// and this part of the area of the one that is known best.
+const FURTHER_SIZE: f32 = 0.12;
+/// A known object below this part of the best one's score is a look-alike.
+const LOOK_ALIKE_PART: f32 = 0.6;
 /// The whole frame is searched for further objects every so many frames.
 const SEARCH_EVERY: u32 = 8;
 /// Seeds looked at closely in a gate and in the whole frame.
@@ -153,12 +157,16 @@ fn reacquire(track: &Track, pursuit: &mut Pursuit, further: &mut Vec<Candidate>)
     }
     let [xx, _, yy] = pursuit.prediction.covariance_px2;
     let lost = (track.misses + 1) as f32;
-    let reach_px = 2.0 * pursuit.prediction.area_px2.sqrt() + 4.0 * (xx + yy).sqrt() + 6.0 * lost;
+    let reach_px = 2.0 * pursuit.prediction.area_px2.sqrt() + 4.0 * (xx + yy).sqrt() + 12.0 * lost;
     let possible = |candidate: &Candidate| {
         let off_px = pursuit.prediction.centroid.distance_px(candidate.centroid);
         let size = (candidate.area_px2 / pursuit.prediction.area_px2.max(1.0)).ln();
-        let size = if candidate.cut { size.max(0.0) } else { size };
-        off_px <= reach_px && size.abs() <= 0.6 + 0.02 * lost && candidate.score >= 0.6 * track.score
+        // What comes out from behind something, or into the picture, shows less of itself.
+        let partly = candidate.cut || track.misses > 1;
+        let smallest = if partly { -2.5 } else { -0.6 };
+        (smallest..0.6 + 0.02 * lost).contains(&size)
+            && off_px <= reach_px
+            && candidate.score >= 0.6 * track.score
     };
     if let Some(at) = further.iter().position(possible) {
         pursuit.found = Some(further.swap_remove(at));
@@ -180,10 +188,11 @@ fn conclude(
         best_score = best_score.max(pursuit.found.as_ref().map_or(0.0, |found| found.score));
         outcomes.push(advance(scene, landmark, track, pursuit));
     }
+    let usual = usual_look(state);
     for candidate in further {
         let full = state.tracks.len() >= scene.options.max_instances as usize;
-        let least = FIRST_SCORE.max(FURTHER_PART * best_score);
-        if candidate.score < least || full {
+        let least = FIRST_SCORE.max(FURTHER_PART * best_score.max(usual.score));
+        if candidate.score < least || candidate.area_px2 < FURTHER_SIZE * usual.area_px2 || full {
             continue;
         }
         best_score = best_score.max(candidate.score);
@@ -196,12 +205,25 @@ fn conclude(
     outcomes
 }
 
-/// Drops objects that stayed unseen, but keeps the one seen most often.
+/// What the objects of a landmark that are known look like: a further one must not be much less.
+struct UsualLook {
+    score: f32,
+    area_px2: f32,
+}
+
+fn usual_look(state: &LandmarkState) -> UsualLook {
+    let known = state.tracks.iter().max_by_key(|track| track.sightings);
+    let area_px2 = |track: &Track| track.predictor.fixes.first().map_or(0.0, |fix| fix.area_px2);
+    UsualLook { score: known.map_or(0.0, |track| track.score), area_px2: known.map_or(0.0, area_px2) }
+}
+
+/// Drops objects that stayed unseen, and look-alikes beside something that looks far more like the landmark. The one
+/// that looks most like it is never dropped.
 fn forget(state: &mut LandmarkState) {
-    let most = state.tracks.iter().map(|track| track.sightings).max().unwrap_or(0);
-    let alone = state.tracks.len() == 1;
+    let best = state.tracks.iter().map(|track| track.score).fold(0.0, f32::max);
     state.tracks.retain(|track| {
-        track.misses < GIVE_UP_AFTER.min(3 + track.sightings) || (alone && track.sightings == most)
+        let seen = track.misses < GIVE_UP_AFTER.min(3 + track.sightings);
+        track.score >= best || (seen && track.score >= LOOK_ALIKE_PART * best)
     });
 }
 

@@ -1,9 +1,10 @@
 //! Which pixels of a bounding box are the object's: colours that fill its middle and are rare around it.
 
-use super::windows::Sample;
+use super::windows::{Sample, stats};
 use crate::adaptive::palette::{Cluster, levels, nearest, palette};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
+use crate::landmark::ColorStats;
 
 /// Colours closer than this count as one, levels; wider for small regions, most of whose pixels are mixtures.
 fn palette_radius(region: RectPx) -> f32 {
@@ -27,6 +28,19 @@ pub(super) fn sample(frame: &Frame, region: RectPx) -> Sample {
     let labels: Vec<Option<usize>> = pixels(frame, region).map(label_of).collect();
     let labels = keep_shades(region, &labels, &colours);
     Sample::new(frame, region, labels)
+}
+
+/// What a sign looks like from so far that lettering and border cannot be resolved: the statistics of its whole face,
+/// of the largest region. `None` where its face is plain and a shade says the same.
+pub(super) fn far_view(regions: &[(&Frame, RectPx)], shades: &[ColorStats]) -> Option<ColorStats> {
+    let (frame, region) = regions.iter().max_by_key(|(_, region)| region.width.min(region.height))?;
+    let face = (region.y..region.y + region.height)
+        .flat_map(|y| (region.x..region.x + region.width).map(move |x| (x, y)))
+        .filter(|&(x, y)| face_radius(*region, x, y) <= 0.9)
+        .map(|(x, y)| frame.pixel(x, y).map(f64::from));
+    let face = stats(face);
+    let plain = |shade: &ColorStats| (0..3).all(|c| (shade.mean[c] - face.mean[c]).abs() <= SAME_AS_FACE);
+    (!shades.iter().any(plain)).then_some(face)
 }
 
 fn pixels(frame: &Frame, rect: RectPx) -> impl Iterator<Item = [u8; 3]> + '_ {
@@ -73,17 +87,31 @@ fn object_colours(frame: &Frame, region: RectPx, colours: &[Cluster]) -> Vec<boo
     own
 }
 
+/// A face whose mean differs less than this from a shade's, in every channel, is plain, levels.
+const SAME_AS_FACE: f32 = 12.0;
+
 enum Place {
     Middle,
     Edge,
     Around,
 }
 
-fn place(region: RectPx, x: u32, y: u32) -> Place {
+/// How far a pixel lies from the middle of the region, in half sides.
+fn offsets(region: RectPx, x: u32, y: u32) -> (f32, f32) {
     let offset = |at: u32, start: u32, length: u32| {
         (at as f32 + 0.5 - start as f32 - length as f32 / 2.0) / (length as f32 / 2.0)
     };
-    let (dx, dy) = (offset(x, region.x, region.width), offset(y, region.y, region.height));
+    (offset(x, region.x, region.width), offset(y, region.y, region.height))
+}
+
+/// The same as a radius: 1 on the inscribed ellipse.
+fn face_radius(region: RectPx, x: u32, y: u32) -> f32 {
+    let (dx, dy) = offsets(region, x, y);
+    dx.hypot(dy)
+}
+
+fn place(region: RectPx, x: u32, y: u32) -> Place {
+    let (dx, dy) = offsets(region, x, y);
     let outside_px = |d: f32, length: u32| (d.abs() - 1.0) * length as f32 / 2.0;
     if dx * dx + dy * dy <= 0.64 {
         Place::Middle

@@ -181,7 +181,7 @@ fn spread(groups: &[Vec<ColorStats>]) -> ColorStats {
 }
 
 /// Mean and population variance of R, G and B.
-fn stats(pixels: impl Iterator<Item = [f64; 3]>) -> ColorStats {
+pub(super) fn stats(pixels: impl Iterator<Item = [f64; 3]>) -> ColorStats {
     let (mut n, mut sum, mut squares) = (0.0_f64, [0.0_f64; 3], [0.0_f64; 3]);
     for pixel in pixels {
         n += 1.0;
