@@ -25,6 +25,13 @@ export async function getJson(path) {
   return response.json();
 }
 
+/** What the service says of itself, and what a client may do: `open`, `token` or `read_only`. */
+export async function getStatus() {
+  const response = await fetch("/api/v1/status", { signal: AbortSignal.timeout(PATIENCE_MS) });
+  if (!response.ok) throw await problem(response);
+  return { status: await response.json(), access: response.headers.get("x-waymark-access") ?? "open" };
+}
+
 /** A change; the token is asked for once and kept for this tab only. @param {string} path @param {string} [method] */
 export async function change(path, method = "POST") {
   const token = sessionStorage.getItem("token");

@@ -91,7 +91,7 @@ export function showHeader() {
     showState(state, item.level, item.words);
   }
   showTitle(all);
-  showNotice(status);
+  showNotice();
 }
 
 /** @param {Item[]} all */
@@ -102,10 +102,9 @@ function showTitle(all) {
   if (document.title !== title) document.title = title;
 }
 
-/** @param {any} status */
-function showNotice(status) {
+function showNotice() {
   const notice = byId("notice");
-  const readOnly = status?.access === "read_only";
+  const readOnly = known.access === "read_only";
   notice.hidden = !readOnly;
   if (readOnly) {
     setText(notice, "Read-only: other machines can connect and no token is set. Start with --token-file to allow changes.");

@@ -1,6 +1,6 @@
 // Starts the page: what is asked when, and what is shown how often.
 
-import { Problem, followEvents, getJson } from "./api.js";
+import { Problem, followEvents, getJson, getStatus } from "./api.js";
 import { byId } from "./dom.js";
 import { showFleet } from "./fleet.js";
 import { showHeader } from "./header.js";
@@ -21,7 +21,8 @@ let landmarksAskedAt = -Infinity;
 
 async function askStatus() {
   try {
-    learnStatus(await getJson("/api/v1/status"));
+    const { status, access } = await getStatus();
+    learnStatus(status, access);
     chooseCamera();
     showSections();
     if (performance.now() - landmarksAskedAt > 2000) await askLandmarks();

@@ -77,7 +77,7 @@ function showControls(state) {
     }), make("p", "answer quiet"));
     place.lastElementChild?.setAttribute("role", "status");
   }
-  const allowed = known.status?.access !== "read_only";
+  const allowed = known.access !== "read_only";
   COMMANDS.forEach(({ when }, index) => {
     const button = /** @type {HTMLButtonElement} */ (place.children[index]);
     button.disabled = !allowed || !when(state);

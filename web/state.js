@@ -3,6 +3,7 @@
 /**
  * @typedef {object} Known
  * @property {any} status last answer of /api/v1/status
+ * @property {string} access what this page may do: open, token or read_only
  * @property {number} statusAt performance.now() of it
  * @property {Map<string, any>} cameras newest entry of each camera, from status or events
  * @property {Map<string, number>} cameraAt performance.now() of each
@@ -17,6 +18,7 @@
 /** @type {Known} */
 export const known = {
   status: null,
+  access: "open",
   statusAt: 0,
   cameras: new Map(),
   cameraAt: new Map(),
@@ -37,9 +39,10 @@ export function learnCamera(camera) {
   known.cameraAt.set(camera.id, performance.now());
 }
 
-/** @param {any} status */
-export function learnStatus(status) {
+/** @param {any} status @param {string} access */
+export function learnStatus(status, access) {
   known.status = status;
+  known.access = access;
   known.statusAt = performance.now();
   for (const camera of status.cameras ?? []) learnCamera(camera);
   for (const id of known.cameras.keys()) {

@@ -3,7 +3,20 @@
 //!
 //! It knows bytes and sequences, not landmarks: pictures are drawn by a function its owner hands in, events and
 //! documents are JSON that its owner makes. A service puts a router together from [`page`], [`Cameras::routes`] and
-//! routes of its own, and hands it to [`serve`].
+//! routes of its own, and hands it to [`serve`]:
+//!
+//! ```no_run
+//! # async fn example(stop: impl Future<Output = ()>) -> std::io::Result<()> {
+//! use axum::routing::get;
+//! use http_face::{Check, Policy, health, page, serve};
+//!
+//! let router = page().route("/livez", get(|| async { health(&[Check::pass("process", "answers")]) }));
+//! let listener = tokio::net::TcpListener::bind("127.0.0.1:8080").await?;
+//! let report = serve(listener, router, Policy::default(), stop).await;
+//! # let _ = report; Ok(()) }
+//! ```
+//!
+//! Every answer carries `X-Waymark-Access`: `open`, `token` or `read_only` (see [`Access`]).
 
 mod bare_answer;
 mod cameras;

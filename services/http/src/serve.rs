@@ -35,6 +35,9 @@ pub struct ServeReport {
 /// Bytes that may wait in the kernel for a client; a slow client then skips pictures instead of seeing old ones.
 const NOT_SENT_LOW_WATER_BYTES: u32 = 128 << 10;
 
+/// Bytes that may wait in the process for a client, for the same reason; also bounds what is read ahead of it.
+const MAX_BUFFERED_BYTES: usize = 128 << 10;
+
 /// Clients told at once that there is no room; more are closed without a word.
 const MAX_APOLOGIES: usize = 64;
 
@@ -136,6 +139,7 @@ async fn serve_connection(
             .timer(TokioTimer::new())
             .header_read_timeout(policy.header_timeout)
             .max_header_size(policy.max_header_bytes)
+            .max_buf_size(MAX_BUFFERED_BYTES)
             .serve_connection(io, TowerToHyperService::new(router))
     );
     let ended = tokio::select! {

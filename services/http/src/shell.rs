@@ -29,6 +29,9 @@ const MAX_DISCARDED_BYTES: usize = 16 << 20;
 const CONTENT_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; \
      connect-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
+/// Tells a client whether it may change things, so that the page can say so.
+const ACCESS: HeaderName = HeaderName::from_static("x-waymark-access");
+
 #[derive(Clone)]
 pub(crate) struct Shell {
     policy: Arc<Policy>,
@@ -59,6 +62,7 @@ async fn pass(State(shell): State<Shell>, request: Request, next: Next) -> Respo
         // RFC 6750 section 3
         response.headers_mut().insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
     }
+    response.headers_mut().insert(ACCESS, HeaderValue::from_static(shell.access.name()));
     secure(response.headers_mut());
     response
 }

@@ -30,7 +30,8 @@ export async function startService(state, port, framesDir) {
   }, FRAME_MS);
 
   const json = (response, value, code = 200) => {
-    response.writeHead(code, { "content-type": code < 400 ? "application/json" : "application/problem+json" });
+    const type = code < 400 ? "application/json" : "application/problem+json";
+    response.writeHead(code, { "content-type": type, "x-waymark-access": state === "read-only" ? "read_only" : "open" });
     response.end(JSON.stringify(value));
   };
   const picture = (response) => {

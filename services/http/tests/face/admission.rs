@@ -61,7 +61,8 @@ async fn changes_need_the_token_once_there_is_one() {
     assert!(without.contains("www-authenticate: Bearer"), "{without}");
     let with = "Authorization: Bearer 0123456789abcdef\r\nContent-Length: 0\r\n";
     assert_eq!(status(&server.ask("POST", "/change", with, "").await), 200);
-    assert!(server.get("/access").await.ends_with("token"));
+    let answer = server.get("/access").await;
+    assert!(answer.contains("x-waymark-access: token\r\n") && answer.ends_with("token"), "{answer}");
 }
 
 #[tokio::test]
