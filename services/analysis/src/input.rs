@@ -47,7 +47,7 @@ pub enum InputError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
     /// The recording holds no such camera.
-    #[error("`{given}` holds no pictures{}; its image topics are: {}", on(topic), topics.join(", "))]
+    #[error("`{given}` holds no pictures{}; {}", on(topic), those(topics))]
     NoImages {
         /// The text as given.
         given: String,
@@ -60,6 +60,13 @@ pub enum InputError {
 
 fn on(topic: &Option<String>) -> String {
     topic.as_ref().map_or_else(String::new, |topic| format!(" on {topic}"))
+}
+
+fn those(topics: &[String]) -> String {
+    match topics {
+        [] => "it has no topic with foxglove.CompressedImage or foxglove.RawImage".to_owned(),
+        topics => format!("its image topics are {}", topics.join(", ")),
+    }
 }
 
 /// One frame of an input, still encoded.

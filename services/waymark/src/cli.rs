@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{completion, landmark, register};
+use crate::commands::{completion, landmark, recording, register};
 
 /// What stands below the options.
 const EXIT_CODES: &str = "Exit codes: 0 fine, 1 failed, 2 usage or configuration, 3 finished with data lost.";
@@ -28,6 +28,8 @@ pub(crate) enum Command {
     #[command(subcommand)]
     Landmark(landmark::Command),
     Register(register::Args),
+    #[command(subcommand)]
+    Recording(recording::Command),
     Completion(completion::Args),
 }
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod completion;
 pub(crate) mod landmark;
+pub(crate) mod recording;
 pub(crate) mod register;
 
 use crate::cli::{Cli, Command};
@@ -13,6 +14,7 @@ pub(crate) fn run(cli: Cli) -> Result<Ending, Failure> {
     let console = if cli.quiet { Console::Quiet } else { Console::Talkative };
     match cli.command {
         Command::Landmark(command) => landmark::run(command, console),
+        Command::Recording(command) => recording::run(command, console),
         Command::Register(args) => register::run(&args, console),
         Command::Completion(args) => completion::run(&args),
     }

@@ -10,6 +10,8 @@ pub(crate) enum Ending {
     Fine,
     /// It finished, but something was lost on the way; what, it said on stderr.
     DataLost,
+    /// It looked for damage, and there is some; what, its result says.
+    Damaged,
 }
 
 /// Why a command did not run to its end.
@@ -49,6 +51,7 @@ impl<T, E: Into<anyhow::Error>> OrUsage<T> for Result<T, E> {
 pub(crate) fn code_of(end: Result<Ending, Failure>) -> ExitCode {
     match end {
         Ok(Ending::Fine) => ExitCode::SUCCESS,
+        Ok(Ending::Damaged) => ExitCode::from(1),
         Ok(Ending::DataLost) => ExitCode::from(3),
         Err(Failure::Failed(error)) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(Failure::Failed(error)) => {
