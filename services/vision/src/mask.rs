@@ -4,12 +4,13 @@
 //! every window that lies wholly inside, compare ([`reference`](crate::reference)). Masks of several shades are
 //! united.
 
-mod boxes;
+mod chunk;
 mod exact;
 mod lane;
 mod lanes;
+mod planes;
+mod powers;
 mod sieve;
-mod verdict;
 
 pub use lanes::Lanes;
 

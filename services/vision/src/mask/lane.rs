@@ -52,6 +52,7 @@ macro_rules! lane {
     };
 }
 
+lane!(u8);
 lane!(u16);
 lane!(u32);
 lane!(u64);

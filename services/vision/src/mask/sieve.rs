@@ -16,12 +16,11 @@ use crate::frame::Frame;
 use crate::landmark::WindowPx;
 use crate::statistics::Acceptance;
 
-use super::boxes::fit;
+use super::chunk::fit;
 use super::exact::{Area, BLOCK_PX};
 
-/// Bytes of a block's pixels, and of what is looked at for it: the windows of its last column begin one pixel later.
+/// Bytes of a block's pixels.
 const BLOCK_BYTES: usize = 3 * BLOCK_PX as usize;
-const LOOKED_AT: usize = 128;
 
 /// Halvings that give the longest run of pixels: 2³.
 const MOST_HALVINGS: u32 = 3;
@@ -60,18 +59,18 @@ impl Mesh {
     }
 }
 
-/// Byte averages of a sub-block that may belong to a matching window, repeated for as many pixels as are looked at.
+/// Byte averages of a sub-block that may belong to a matching window, repeated for the pixels of a block.
 #[derive(Clone, Debug)]
 pub(super) struct Levels {
-    low: [u8; LOOKED_AT],
-    reach: [u8; LOOKED_AT],
+    low: [u8; BLOCK_BYTES],
+    reach: [u8; BLOCK_BYTES],
 }
 
 impl Levels {
     /// `None` where no sub-block can belong to one.
     pub(super) fn new(accepted: &Acceptance, samples: u32, mesh: Mesh) -> Option<Self> {
         let (n, k) = (f64::from(samples), f64::from(mesh.samples()));
-        let mut levels = Self { low: [0; LOOKED_AT], reach: [0; LOOKED_AT] };
+        let mut levels = Self { low: [0; BLOCK_BYTES], reach: [0; BLOCK_BYTES] };
         for channel in 0..3 {
             let largest_variance = accepted.spread[channel].high as f64 / (n * n);
             let wider = (largest_variance * (n - k).max(0.0) / k).sqrt() + ROUNDING;
@@ -81,7 +80,7 @@ impl Levels {
             if low > high {
                 return None;
             }
-            for at in (channel..LOOKED_AT).step_by(3) {
+            for at in (channel..BLOCK_BYTES).step_by(3) {
                 (levels.low[at], levels.reach[at]) = (low as u8, (high - low) as u8);
             }
         }
@@ -92,11 +91,11 @@ impl Levels {
 /// More than all rounding in the few operations above.
 const ROUNDING: f64 = 1e-6;
 
-/// 1 for the bytes that begin a pixel of the block or the one pixel after it.
-const PIXEL_STARTS: [u8; LOOKED_AT] = {
-    let mut starts = [0; LOOKED_AT];
+/// 1 for the bytes that begin a pixel.
+const PIXEL_STARTS: [u8; BLOCK_BYTES] = {
+    let mut starts = [0; BLOCK_BYTES];
     let mut at = 0;
-    while at <= BLOCK_BYTES {
+    while at < BLOCK_BYTES {
         starts[at] = 1;
         at += 3;
     }
@@ -108,6 +107,7 @@ const PIXEL_STARTS: [u8; LOOKED_AT] = {
 pub(super) struct Sieve {
     averages: Vec<u8>,
     next_averages: Vec<u8>,
+    inside: Vec<u8>,
     /// For each band and block, whether a window there may match: 1 or 0.
     alive: Vec<u8>,
     blocks: usize,
@@ -120,18 +120,22 @@ impl Sieve {
         let region = grid.region();
         let bands = mesh.bands(region.height);
         self.blocks = region.width.div_ceil(BLOCK_PX) as usize;
-        let padded = BLOCK_BYTES * self.blocks + LOOKED_AT;
+        let padded = BLOCK_BYTES * (self.blocks + 1);
         fit(&mut self.averages, padded);
         fit(&mut self.next_averages, padded);
+        fit(&mut self.inside, padded);
         self.alive.clear();
         for band in 0..bands {
             let start = 3 * region.x as usize;
             let row = &frame.row(region.y + band * mesh.row_step)[start..start + 3 * region.width as usize];
             self.average(row, mesh.halvings);
-            for block in 0..self.blocks {
-                let averages = &self.averages[BLOCK_BYTES * block..][..LOOKED_AT];
-                let alive = levels.iter().fold(0, |alive, levels| alive | may_match(averages, levels));
-                self.alive.push(alive);
+            let first = self.alive.len();
+            self.alive.resize(first + self.blocks, 0);
+            for levels in levels {
+                compare(&self.averages[..padded], levels, &mut self.inside);
+                for (block, alive) in self.alive[first..].iter_mut().enumerate() {
+                    *alive |= any_pixel(&self.inside[BLOCK_BYTES * block..][..BLOCK_BYTES + 3]);
+                }
             }
         }
     }
@@ -145,7 +149,7 @@ impl Sieve {
             let ahead = 3 << halving;
             let pairs = self.averages.iter().zip(&self.averages[ahead..]);
             for (next, (&left, &right)) in self.next_averages.iter_mut().zip(pairs) {
-                *next = (u16::from(left) + u16::from(right)).div_ceil(2) as u8;
+                *next = ((u16::from(left) + u16::from(right) + 1) >> 1) as u8;
             }
             std::mem::swap(&mut self.averages, &mut self.next_averages);
         }
@@ -188,17 +192,24 @@ impl Sieve {
     }
 }
 
-/// 1 where a pixel's average lies within bounds in all three channels, 0 where none does.
+/// 1 for every byte average within the bounds.
 #[inline(always)]
-fn may_match(averages: &[u8], levels: &Levels) -> u8 {
-    let mut inside = [0_u8; LOOKED_AT];
-    let bounds = levels.low.iter().zip(&levels.reach);
-    for ((inside, &average), (&low, &reach)) in inside.iter_mut().zip(averages).zip(bounds) {
-        *inside = u8::from(average.wrapping_sub(low) <= reach);
+fn compare(averages: &[u8], levels: &Levels, inside: &mut [u8]) {
+    let blocks = averages.as_chunks::<BLOCK_BYTES>().0.iter().zip(inside.as_chunks_mut::<BLOCK_BYTES>().0);
+    for (averages, inside) in blocks {
+        for at in 0..BLOCK_BYTES {
+            inside[at] = u8::from(averages[at].wrapping_sub(levels.low[at]) <= levels.reach[at]);
+        }
     }
+}
+
+/// 1 where some pixel of a block, or the first one after it, is inside in all three channels; else 0. (Windows that start
+/// on the second sample of the block's last pixel cover the next one first.)
+#[inline(always)]
+fn any_pixel(inside: &[u8]) -> u8 {
     let mut any = 0;
-    for at in 0..LOOKED_AT - 2 {
+    for at in 0..BLOCK_BYTES {
         any |= inside[at] & inside[at + 1] & inside[at + 2] & PIXEL_STARTS[at];
     }
-    any
+    any | inside[BLOCK_BYTES] & inside[BLOCK_BYTES + 1] & inside[BLOCK_BYTES + 2]
 }

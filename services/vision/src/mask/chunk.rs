@@ -1,0 +1,97 @@
+//! Thirty-two neighbouring columns at a time.
+//!
+//! Fixed-size arrays by value and plain loops over them: whatever vector width the enclosing function is compiled for,
+//! each loop becomes a few whole instructions, without a remainder even in the narrowest area.
+
+use super::lane::Lane;
+
+/// Columns in a chunk.
+pub(super) const WIDTH: usize = 32;
+
+/// A value for each of 32 neighbouring columns.
+pub(super) type Chunk<T> = [T; WIDTH];
+
+/// The chunk that begins at column `x`.
+#[inline(always)]
+pub(super) fn load<T: Lane>(row: &[T], x: usize) -> Chunk<T> {
+    let mut chunk = [T::default(); WIDTH];
+    chunk.copy_from_slice(&row[x..x + WIDTH]);
+    chunk
+}
+
+/// Puts a chunk back at column `x`.
+#[inline(always)]
+pub(super) fn store<T: Lane>(row: &mut [T], x: usize, chunk: Chunk<T>) {
+    row[x..x + WIDTH].copy_from_slice(&chunk);
+}
+
+/// `with` of every column of both.
+#[inline(always)]
+pub(super) fn join<T: Copy, U: Copy, V: Copy + Default>(
+    left: Chunk<T>,
+    right: Chunk<U>,
+    with: impl Fn(T, U) -> V,
+) -> Chunk<V> {
+    let mut joined = [V::default(); WIDTH];
+    for at in 0..WIDTH {
+        joined[at] = with(left[at], right[at]);
+    }
+    joined
+}
+
+/// The sum of every column of both.
+#[inline(always)]
+pub(super) fn add<T: Lane>(left: Chunk<T>, right: Chunk<T>) -> Chunk<T> {
+    join(left, right, T::plus)
+}
+
+/// Whether any column is not 0.
+#[inline(always)]
+pub(super) fn any_set(chunk: &Chunk<u8>) -> bool {
+    let mut all = 0;
+    for &column in chunk {
+        all |= column;
+    }
+    all != 0
+}
+
+/// The lowest bits of all columns, the first column's lowest.
+#[inline(always)]
+pub(super) fn pack(chunk: &Chunk<u8>) -> u32 {
+    let mut packed = 0;
+    for (at, eight) in chunk.as_chunks::<8>().0.iter().enumerate() {
+        // Bit 8j goes to bit 56 + j; nothing else reaches those bits.
+        let bits = u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+        packed |= (bits as u32) << (8 * at);
+    }
+    packed
+}
+
+/// The smallest multiple of [`WIDTH`] that is not below `columns`.
+pub(super) fn whole_chunks(columns: usize) -> usize {
+    columns.next_multiple_of(WIDTH)
+}
+
+/// Makes `buffer` at least that long; what it holds afterwards is arbitrary.
+#[inline(always)]
+pub(super) fn fit<T: Copy + Default>(buffer: &mut Vec<T>, length: usize) {
+    if buffer.len() < length {
+        buffer.resize(length, T::default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn packing_keeps_every_bit(bits: u32) {
+            let mut chunk = [0; WIDTH];
+            (0..WIDTH).for_each(|at| chunk[at] = (bits >> at & 1) as u8);
+            prop_assert_eq!(pack(&chunk), bits);
+            prop_assert_eq!(any_set(&chunk), bits != 0);
+        }
+    }
+}

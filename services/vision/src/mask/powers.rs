@@ -1,0 +1,111 @@
+//! Sums over the columns of a window.
+//!
+//! With B(x) the sum of m = ⌊w/2⌋ columns from x and c(x) one column, a window of width w sums to
+//!
+//! | | starts on the first sample of x | starts on its second sample |
+//! | --- | --- | --- |
+//! | w even | 2 B(x) | 2 B(x) − c(x) + c(x + m) |
+//! | w odd | 2 B(x) + c(x + m) | 2 B(x) − c(x) + 2 c(x + m) |
+//!
+//! B is put together from sums of 1, 2, 4 … columns, each level twice the one before it: a handful of steps over whole
+//! chunks, where a running sum would go one column after another.
+
+use super::chunk::{Chunk, WIDTH, add, fit, join, load, store, whole_chunks};
+use super::lane::Lane;
+
+/// Column sums of a row of windows, and sums of 2ᵏ neighbouring ones for every k that B needs.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Powers<T> {
+    levels: Vec<Vec<T>>,
+    /// Columns, in whole chunks, that every level covers; what lies beyond is arbitrary.
+    covered: usize,
+    half: usize,
+    odd: T,
+}
+
+impl<T: Lane> Powers<T> {
+    /// Prepares for windows of `side` samples at `positions` columns.
+    #[inline(always)]
+    pub(super) fn fit(&mut self, positions: usize, side: u16) {
+        self.half = usize::from(side) / 2;
+        self.odd = T::from_u32(u32::from(side) % 2);
+        self.covered = whole_chunks(positions + self.half + 1);
+        let levels = self.half.checked_ilog2().map_or(1, |largest| largest as usize + 1);
+        if self.levels.len() < levels {
+            self.levels.resize_with(levels, Vec::new);
+        }
+        for level in &mut self.levels {
+            fit(level, self.covered + self.half + WIDTH);
+        }
+    }
+
+    /// The column sums, to be set.
+    #[inline(always)]
+    pub(super) fn columns(&mut self) -> &mut [T] {
+        &mut self.levels[0][..self.covered]
+    }
+
+    /// Sums neighbouring columns.
+    #[inline(always)]
+    pub(super) fn build(&mut self) {
+        let mut length = 1;
+        for level in 1..self.levels.len() {
+            if 2 * length > self.half {
+                return;
+            }
+            let (lower, upper) = self.levels.split_at_mut(level);
+            let (below, this) = (&lower[level - 1], &mut upper[0]);
+            for x in (0..self.covered).step_by(WIDTH) {
+                store(this, x, add(load(below, x), load(below, x + length)));
+            }
+            length *= 2;
+        }
+    }
+
+    /// Sums of the windows that start at the 32 columns from `x`: on their first sample, and on their second.
+    #[inline(always)]
+    pub(super) fn windows(&self, x: usize) -> [Chunk<T>; 2] {
+        let mut lesser = [T::default(); WIDTH];
+        let mut from = x;
+        for (level, sums) in self.levels.iter().enumerate() {
+            if self.half & 1 << level != 0 {
+                lesser = add(lesser, load(sums, from));
+                from += 1 << level;
+            }
+        }
+        let first_column = load(&self.levels[0], x);
+        let next_column = load(&self.levels[0], from);
+        let odd = self.odd;
+        let twice = add(lesser, lesser);
+        let on_first = join(twice, next_column, |sum, next| sum.plus(odd.times(next)));
+        let on_second = join(join(on_first, next_column, T::plus), first_column, T::minus);
+        [on_first, on_second]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::doubled_grid::DoubledGrid;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn windows_sum_their_weighted_columns(side in 1u16..200, seed in 1u32..1000) {
+            let mut powers = Powers::<u32>::default();
+            powers.fit(64, side);
+            let levels: Vec<u32> = (0..powers.columns().len() as u32).map(|x| (x * seed) % 251).collect();
+            powers.columns().copy_from_slice(&levels);
+            powers.build();
+            for x in 0..64 {
+                let windows = powers.windows(x / 32 * 32);
+                for phase in 0..2 {
+                    let start = 2 * x as u32 + phase;
+                    let expected: u32 = DoubledGrid::pixels_under(start, side)
+                        .map(|at| DoubledGrid::samples_on(at, start, side) * levels[at as usize]).sum();
+                    prop_assert_eq!(windows[phase as usize][x % 32], expected);
+                }
+            }
+        }
+    }
+}
