@@ -18,11 +18,20 @@ export function items() {
   }
   return [
     ...(status.leader ? [leader(status.leader)] : []),
-    ...(status.cameras ? cameras() : []),
+    ...(status.role === "follower" ? cameras() : []),
     ...(status.router ? [router(status.router)] : []),
     ...(status.recorder ? [recorder(status.recorder)] : []),
-    { name: "Service", level: "good", words: `up ${duration(status.uptime_s)}, version ${status.version}` },
+    service(status),
   ];
+}
+
+/** @param {any} status @returns {Item} */
+function service(status) {
+  const name = "Service";
+  if (status.role === "follower" && !known.following) {
+    return { name, level: "warn", words: "answers, but its events do not arrive" };
+  }
+  return { name, level: "good", words: `up ${duration(status.uptime_s)}, version ${status.version}` };
 }
 
 /** @param {any} leader @returns {Item} */

@@ -19,6 +19,11 @@ function entries() {
   });
 }
 
+/** A follower looks for landmarks, a leader publishes them. */
+function isFollower() {
+  return known.status?.role === "follower";
+}
+
 /** Shows what is known now. */
 export function showLandmarks() {
   const all = entries();
@@ -29,13 +34,13 @@ export function showLandmarks() {
   for (const one of all) fillRow(/** @type {HTMLTableRowElement} */ (rows.get(one.key)), one, ageMs);
   byId("landmarks").hidden = all.length === 0;
   byId("landmark-none").hidden = all.length > 0;
-  setText(byId("landmark-none"), known.status?.leader
+  setText(byId("landmark-none"), isFollower()
     ? "No landmark is in force: none has been received from the leader."
     : "No landmark is published.");
   const isOld = ageMs !== null && ageMs > STALE_AFTER_MS;
   const measured = isOld ? 0 : all.filter((one) => one.entry.result === "measured").length;
   const version = known.version ? ` · set ${known.version.epoch}.${known.version.version}` : "";
-  const count = known.status?.cameras ? `${measured} of ${all.length} measured` : `${all.length} published`;
+  const count = isFollower() ? `${measured} of ${all.length} measured` : `${all.length} published`;
   setText(byId("landmark-facts"), count + version);
 }
 
@@ -81,7 +86,7 @@ function fillRow(row, { landmark, entry, several }, ageMs) {
 function fillResult(state, entry, ageMs, revision) {
   const measured = entry.result === "measured";
   if (entry.result === null) {
-    showState(state, "unknown", known.status?.cameras ? "not looked for yet" : `published, revision ${revision}`);
+    showState(state, "unknown", isFollower() ? "not looked for yet" : `published, revision ${revision}`);
   } else if (ageMs !== null && ageMs > STALE_AFTER_MS) {
     showState(state, "warn", `not now: last ${measured ? "measured" : "missed"} ${ago(ageMs / 1000)}`);
   } else if (measured) {

@@ -35,7 +35,7 @@ export function restartLive() {
   loop.abort();
   times = [];
   loop = new AbortController();
-  if (known.camera && !document.hidden) void run(known.camera, loop.signal);
+  if (known.camera && known.layers && !document.hidden) void run(known.camera, loop.signal);
 }
 
 /** Whether the picture stands still. */
@@ -142,8 +142,9 @@ function describe() {
 
 /** Offers the layers that the service can draw. */
 export function showLayers() {
-  for (const layer of known.layers) if (!OFF_AT_FIRST.has(layer)) known.layersOn.add(layer);
-  reconcile(byId("layers"), keptLayers, ["legend", ...known.layers], (layer) => {
+  const layers = known.layers ?? [];
+  for (const layer of layers) if (!OFF_AT_FIRST.has(layer)) known.layersOn.add(layer);
+  reconcile(byId("layers"), keptLayers, ["legend", ...layers], (layer) => {
     if (layer === "legend") return /** @type {HTMLElement} */ (byId("layers").firstElementChild);
     const box = make("input");
     box.type = "checkbox";

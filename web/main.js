@@ -1,8 +1,7 @@
 // Starts the page: what is asked when, and what is shown how often.
 
-import { Problem, followEvents, getJson, getStatus } from "./api.js";
+import { followEvents, getJson, getStatus } from "./api.js";
 import { byId } from "./dom.js";
-import { showFleet } from "./fleet.js";
 import { showHeader } from "./header.js";
 import { showLandmarks } from "./landmarks.js";
 import { restartLive, showLayers, showLive } from "./live.js";
@@ -18,6 +17,9 @@ const SHOW_MS = 200;
 
 /** The set whose landmarks are shown, so that they are asked for again when it changes. */
 let landmarksAskedAt = -Infinity;
+
+/** Whether a follower's pictures and events are being asked for. */
+let started = false;
 
 async function askStatus() {
   try {
@@ -40,16 +42,6 @@ async function askLandmarks() {
   landmarksAskedAt = performance.now();
 }
 
-async function askFleet() {
-  try {
-    showFleet(await getJson("/api/v1/fleet"));
-  } catch (error) {
-    // A service without a fleet view has nothing to show, now or later.
-    if (error instanceof Problem && error.status === 404) return;
-  }
-  setTimeout(askFleet, 2000);
-}
-
 async function askLayers() {
   try {
     known.layers = (await getJson("/api/v1/cameras")).layers ?? [];
@@ -66,10 +58,20 @@ function chooseCamera() {
   restartLive();
 }
 
-/** A leader has no cameras of its own and may have no recorder: what a service does not report is not shown. */
+/** A leader looks through no camera and records nothing: those sections, and what feeds them, are a follower's. */
 function showSections() {
-  for (const [field, sections] of Object.entries({ cameras: ["live", "plots-section"], recorder: ["recorder-section"] })) {
-    for (const section of sections) byId(section).hidden = known.status[field] === undefined;
+  const isFollower = known.status.role === "follower";
+  for (const section of ["live", "plots-section", "recorder-section"]) byId(section).hidden = !isFollower;
+  if (isFollower && !started) {
+    started = true;
+    followEvents(
+      (camera) => {
+        learnCamera(camera);
+        samplePlots(camera);
+      },
+      (following) => (known.following = following),
+    );
+    void askLayers();
   }
 }
 
@@ -84,15 +86,6 @@ function show() {
   drawPlots();
 }
 
-followEvents(
-  (camera) => {
-    learnCamera(camera);
-    samplePlots(camera);
-  },
-  (following) => (known.following = following),
-);
 startProbe();
 void askStatus();
-void askLayers();
-void askFleet();
 setInterval(show, SHOW_MS);

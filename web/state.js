@@ -10,7 +10,7 @@
  * @property {any[]} landmarks descriptors in force
  * @property {{epoch: number, version: number} | null} version of the landmark set
  * @property {string | null} camera the one shown
- * @property {string[]} layers that can be drawn
+ * @property {string[] | null} layers that can be drawn, once they are known
  * @property {Set<string>} layersOn that are drawn
  * @property {boolean} following events arrive
  */
@@ -25,7 +25,7 @@ export const known = {
   landmarks: [],
   version: null,
   camera: null,
-  layers: [],
+  layers: null,
   layersOn: new Set(),
   following: false,
 };

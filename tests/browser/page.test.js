@@ -146,3 +146,12 @@ test("a held picture stands still, steps, zooms, and gives its pixels and their 
   assert.deepEqual(complaints, []);
   await close();
 });
+
+test("the leader's page shows what is published, and nothing that a leader does not have", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.leaderUrl, {}, "#landmarks tbody tr");
+  for (const id of ["red", "blue"]) await page.locator("#landmarks .name", { hasText: new RegExp(`^${id}`) }).waitFor();
+  assert.match((await page.locator("#landmarks .result").first().textContent()) ?? "", /published, revision \d+/);
+  for (const section of ["#live", "#recorder-section", "#plots-section"]) assert.equal(await page.locator(section).isHidden(), true);
+  assert.deepEqual(complaints, []);
+  await close();
+});

@@ -1,10 +1,13 @@
 // A page whose every complaint is kept: console errors, exceptions, violations of the content policy.
 
+const FIRST_PICTURE = "#picture[data-sequence]";
+
 /**
+ * Opens the page and waits until `sign` is there: the first picture, unless told otherwise.
  * @param {import("playwright-core").Browser} browser @param {string} url
- * @param {import("playwright-core").BrowserContextOptions} [options]
+ * @param {import("playwright-core").BrowserContextOptions} [options] @param {string} [sign]
  */
-export async function openWatched(browser, url, options = {}) {
+export async function openWatched(browser, url, options = {}, sign = FIRST_PICTURE) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();
   /** @type {string[]} */
@@ -20,6 +23,6 @@ export async function openWatched(browser, url, options = {}) {
       window.keepViolation(`${event.violatedDirective} ${event.blockedURI}`));
   });
   await page.goto(url);
-  await page.waitForFunction(() => Boolean(document.querySelector("#picture")?.dataset.sequence));
+  await page.waitForFunction((sign) => Boolean(document.querySelector(sign)), sign);
   return { page, complaints, close: () => context.close() };
 }

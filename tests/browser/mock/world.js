@@ -64,9 +64,9 @@ export function makeWorld(state) {
       return null;
     },
     landmarks: () => ({ version: { epoch: 3, version: 7 }, landmarks: set }),
-    fleet: () => ({ vehicles: [{ vehicle: "lead", role: "leader", age_s: 0.4 }, { vehicle: "follower-1", role: "follower", age_s: 0.1 }] }),
     status: () => state === "leader" ? {
       vehicle: "lead", role: "leader", version: "0.1.0", uptime_s: 4021, router: { connected: true }, landmarks: set.length,
+      set: { epoch: 3, version: 7 }, edits: { made: 4, refused: 0 }, cameras: [],
     } : ({
       vehicle: "follower-1", role: "follower", version: "0.1.0", uptime_s: 4021 + (Date.now() - startedAt) / 1000,
       leader: { vehicle: "lead", present: state !== "leader-gone", age_s: state === "leader-gone" ? 48 : 0.4 },
