@@ -6,6 +6,7 @@
 
 mod candidate;
 pub(crate) mod choose;
+mod disc;
 mod face;
 pub(crate) mod likeness;
 pub(crate) mod noise;

@@ -1,6 +1,7 @@
 //! Objects that may be the landmark, in a part of the frame.
 
 use super::choose::{self, Form};
+use super::disc;
 use super::face::LETTERING_BRIGHTNESS;
 use super::likeness::Likeness;
 use super::patch::Patch;
@@ -10,7 +11,7 @@ use crate::bitmask::BitMask;
 use crate::components::{Component, Components};
 use crate::frame::Frame;
 use crate::geometry::{PointPx, RectPx};
-use crate::landmark::{ColorStats, Landmark};
+use crate::landmark::{ColorStats, Landmark, ShapeClass};
 
 /// Fewer like pixels than this are no seed.
 const LEAST_SEED_PX: u64 = 5;
@@ -19,6 +20,8 @@ const PARTS_REACH: f32 = 0.3;
 
 /// Signs whose parts fill this much of their hull are filled.
 const FILLED_SOLIDITY: f32 = 0.7;
+/// Seeds larger than this show an outline, px.
+const DISC_SIZE_PX: u32 = 22;
 /// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
 /// apart on small signs.
 const PALEST: [f32; 3] = [0.3, 0.45, 0.62];
@@ -95,6 +98,7 @@ fn from_seeds(search: &Search<'_>) -> Vec<Candidate> {
         if !found.iter().any(|known| known.covers(centre)) {
             let seed = seed_patch(search, &components, seed, &seeds);
             found.extend(candidate(search, &seed));
+            found.extend(round_candidate(search, &seed));
         }
     }
     found
@@ -158,9 +162,27 @@ fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
     let sign = search.landmark.shape.is_sign() && form.solidity >= FILLED_SOLIDITY;
     let object = if sign { seen.convex() } else { seen };
     let edge = if sign { border(search, &object) } else { Edge::Plain };
+    measured(search, object, &form, edge)
+}
+
+/// A sign too small to show its outline, near a seed.
+fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
+    let face = search.likeness.face()?;
+    let round = matches!(search.landmark.shape, ShapeClass::Octagon | ShapeClass::Circle);
+    let bounds = seed.bounds()?;
+    if !round || bounds.width.max(bounds.height) > DISC_SIZE_PX {
+        return None;
+    }
+    let (object, clear) = disc::find(search.frame, seed.rect, bounds, face)?;
+    let mut candidate = measured(search, object, &Form::ROUND, Edge::Plain)?;
+    candidate.score *= clear.sqrt();
+    Some(candidate)
+}
+
+fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Option<Candidate> {
     let (centroid, area_px2) = soft_edge::centroid_and_area(search.frame, &object, edge)?;
     let (window_px, observed) = choose::best_window(search, &object, area_px2)?;
-    let score = choose::score(search, &object, &form, area_px2, &observed);
+    let score = choose::score(search, &object, form, area_px2, &observed);
     let cut = object.touches_border(search.frame.width(), search.frame.height());
     let gain = search.likeness.nearest(observed.mean).gain;
     Some(Candidate { object, centroid, area_px2, gain, observed, window_px, cut, score })

@@ -20,6 +20,9 @@ pub(crate) struct Form {
 }
 
 impl Form {
+    /// Of a disc.
+    pub(crate) const ROUND: Self = Self { solidity: 1.0, elongation: 1.0 };
+
     pub(crate) fn of(object: &Patch) -> Self {
         let area = object.count() as f32;
         let hull_area = polygon_area_and_centroid(&object.hull()).map_or(area, |(hull_area, _)| hull_area);
@@ -116,23 +119,32 @@ pub(crate) fn score(
     let size = area_px2 / (area_px2 + SPECK_AREA_PX2);
     let surely = size * form.suits(search.landmark.shape) * isolation(search, object);
     if let Some(face) = search.likeness.face() {
-        let seen = face.compare(face_pixels(search, object));
+        let seen = face.compare(face_pixels(search, object).map(|(color, _)| color));
         let light = off((seen.color.gain / search.gain).max(1e-3).ln(), 0.4);
-        let lettered =
-            (seen.lettering.max(0.0) * (1.0 + PLAIN_FACE) / (seen.lettering.max(0.0) + PLAIN_FACE)).min(1.0);
-        return surely * light * off(seen.color.excess, 0.7) * lettered;
+        let pale = face.pale_middle(face_pixels(search, object));
+        let evidence = seen.lettering.max(pale).max(0.0);
+        let lettered = (evidence * (1.0 + PLAIN_FACE) / (evidence + PLAIN_FACE)).min(1.0);
+        return surely * light * off(seen.color.excess, 1.0) * lettered;
     }
     let color = search.likeness.nearest(observed.mean);
     let light = off((color.gain / search.gain).max(1e-3).ln(), 0.25);
     surely * light * off(color.excess, 0.7) * off(variance_excess(search, observed), 3.0)
 }
 
-/// The pixels of an object without its edge.
-fn face_pixels<'a>(search: &'a Search<'_>, object: &'a Patch) -> impl Iterator<Item = [f32; 3]> + 'a {
+/// The pixels of an object without its edge, each with its distance from the middle as a part of the radius.
+fn face_pixels<'a>(search: &'a Search<'_>, object: &'a Patch) -> impl Iterator<Item = ([f32; 3], f32)> + 'a {
     let inner = object.eroded(1);
     let inner = if inner.count() >= 9 { inner } else { object.clone() };
-    let pixel = |(x, y): (i32, i32)| search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
-    inner.set_places().map(|at| pixel(at).map(f32::from)).collect::<Vec<_>>().into_iter()
+    let (mut n, mut sx, mut sy) = (0.0_f32, 0.0_f32, 0.0_f32);
+    for (x, y) in inner.set_places() {
+        (n, sx, sy) = (n + 1.0, sx + x as f32, sy + y as f32);
+    }
+    let (mx, my, radius) = (sx / n, sy / n, (object.count() as f32 / std::f32::consts::PI).sqrt());
+    let places: Vec<(i32, i32)> = inner.set_places().collect();
+    places.into_iter().map(move |(x, y)| {
+        let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
+        (pixel.map(f32::from), (x as f32 - mx).hypot(y as f32 - my) / radius)
+    })
 }
 
 /// By how many tolerances the observed variance exceeds the descriptor's, camera noise taken out.

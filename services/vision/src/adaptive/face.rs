@@ -17,6 +17,8 @@ const DEEPEST: f32 = 1.5;
 /// How far a tint may point aside, as a part of its length and in levels.
 const TINT_SPREAD: f32 = 0.35;
 const TINT_NOISE: f32 = 5.0;
+/// The middle of a face reaches to this part of its radius.
+const MIDDLE_RADIUS: f32 = 0.45;
 /// Brightness of lettering over the brightest channel of the sign's colour.
 pub(crate) const LETTERING_BRIGHTNESS: f32 = 1.3;
 
@@ -31,6 +33,8 @@ pub(crate) struct Face {
     /// Distance of the sign's colour from grey, levels.
     purity: f32,
     palest: f32,
+    /// Brightness of the sign's colour over the face's.
+    plainness: f32,
     /// How much paleness and brightness go together on a clear face, levels².
     lettering: f32,
 }
@@ -59,6 +63,7 @@ impl Face {
             tint: away.map(|level| level / purity),
             purity,
             palest: PALEST,
+            plainness: brightness(own) / brightness(mean).max(1.0),
             lettering: lettered * (1.0 - lettered) * lighter * purity,
         })
     }
@@ -74,6 +79,28 @@ impl Face {
         let aside2 = dot(away, away) - along * along;
         let purity = along / self.purity;
         (self.palest..DEEPEST).contains(&purity) && aside2 <= (TINT_SPREAD * along + TINT_NOISE).powi(2)
+    }
+
+    /// How much of the tint a colour shows, 1 for the pure colour; negative of the opposite tint.
+    pub(crate) fn tint_of(&self, color: [f32; 3]) -> f32 {
+        let away = away_from_grey(color);
+        let along = dot(away, self.tint);
+        let aside = (dot(away, away) - along * along).max(0.0).sqrt();
+        ((along - aside) / self.purity).min(1.2)
+    }
+
+    /// How pale the middle of an object is against the ring around it, as a part of the pure saturation: lettering
+    /// shows there even where it cannot be resolved, and a plain object is palest at its edge.
+    pub(crate) fn pale_middle(&self, pixels: impl Iterator<Item = ([f32; 3], f32)>) -> f32 {
+        let (mut middle, mut ring) = ((0.0_f32, 0.0_f32), (0.0_f32, 0.0_f32));
+        for (color, radius) in pixels {
+            let saturation = dot(away_from_grey(color), self.tint) / brightness(color).max(16.0);
+            let part = if radius < MIDDLE_RADIUS { &mut middle } else { &mut ring };
+            part.0 += saturation;
+            part.1 += 1.0;
+        }
+        let pure = self.purity / (brightness(self.mean) * self.plainness).max(16.0);
+        (ring.0 / ring.1.max(1.0) - middle.0 / middle.1.max(1.0)) / pure
     }
 
     /// The comparison of an object's pixels with the face.

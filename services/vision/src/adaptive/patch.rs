@@ -57,6 +57,20 @@ impl Patch {
         self.cells.iter().filter(|&&set| set).count()
     }
 
+    /// The rectangle around the set pixels, in the frame; `None` of nothing.
+    pub(crate) fn bounds(&self) -> Option<RectPx> {
+        let (mut left, mut top, mut right, mut bottom) = (i32::MAX, i32::MAX, 0, 0);
+        for (x, y) in self.set_places() {
+            (left, top, right, bottom) = (left.min(x), top.min(y), right.max(x + 1), bottom.max(y + 1));
+        }
+        (left < right).then(|| RectPx {
+            x: self.rect.x + left as u32,
+            y: self.rect.y + top as u32,
+            width: (right - left) as u32,
+            height: (bottom - top) as u32,
+        })
+    }
+
     /// Every pixel's place in the patch.
     pub(crate) fn places(&self) -> impl Iterator<Item = (i32, i32)> + use<> {
         let (width, height) = (self.width(), self.height());

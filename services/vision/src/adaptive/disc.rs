@@ -1,0 +1,118 @@
+//! Round signs too small to show an outline: the disc that stands out most by its tint.
+//!
+//! A few pixels across, a sign's outline melts into whatever stands next to it, and a mask of its tint takes in posts
+//! and bushes. A disc whose inside shows the tint and whose surroundings do not, on all sides, is the better model.
+
+use super::face::Face;
+use super::patch::Patch;
+use crate::frame::Frame;
+use crate::geometry::RectPx;
+
+/// Radii tried, px.
+const RADII_PX: (f32, f32) = (3.0, 9.0);
+const RADIUS_STEP: f32 = 1.09;
+/// Directions in which the surroundings are judged.
+const SECTORS: usize = 8;
+
+/// A disc and how it stands out.
+#[derive(Clone, Copy, Debug)]
+struct Disc {
+    x: f32,
+    y: f32,
+    radius: f32,
+}
+
+/// How a disc stands out from its surroundings.
+#[derive(Clone, Copy, Debug, Default)]
+struct Contrast {
+    /// Tint inside less tint around, as a part of the pure tint.
+    overall: f32,
+    /// The same in the second weakest direction, as a part of the tint inside.
+    weakest: f32,
+}
+
+/// The most outstanding disc centred within `bounds` of the frame, as a mask with room around it, and how clearly it
+/// stands out on its weaker sides, 0..1.
+pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> Option<(Patch, f32)> {
+    let tints = Tints::of(frame, rect, face);
+    let (left, top) = ((bounds.x - rect.x) as f32, (bounds.y - rect.y) as f32);
+    let mut best: Option<(f32, Disc, Contrast)> = None;
+    let mut radius = RADII_PX.0;
+    while radius <= RADII_PX.1.min(0.75 * bounds.width.max(bounds.height) as f32 + 1.0) {
+        for v in 0..=2 * bounds.height {
+            for u in 0..=2 * bounds.width {
+                let disc = Disc { x: left + 0.5 * u as f32, y: top + 0.5 * v as f32, radius };
+                let contrast = tints.contrast(disc);
+                let merit = contrast.overall * (0.5 + 0.5 * contrast.weakest.max(0.0)) * radius.powf(0.6);
+                if best.as_ref().is_none_or(|(most, ..)| merit > *most) {
+                    best = Some((merit, disc, contrast));
+                }
+            }
+        }
+        radius *= RADIUS_STEP;
+    }
+    let (_, disc, contrast) = best?;
+    (contrast.overall > 0.15).then(|| (disc.patch(rect), contrast.weakest.clamp(0.0, 1.0)))
+}
+
+impl Disc {
+    fn patch(self, rect: RectPx) -> Patch {
+        Patch::from_fn(rect, |x, y| {
+            (x as f32 + 0.5 - self.x).powi(2) + (y as f32 + 0.5 - self.y).powi(2) <= self.radius * self.radius
+        })
+    }
+}
+
+/// How much of the tint each pixel of a rectangle shows, 1 for the pure colour.
+struct Tints {
+    width: i32,
+    height: i32,
+    values: Vec<f32>,
+}
+
+impl Tints {
+    fn of(frame: &Frame, rect: RectPx, face: &Face) -> Self {
+        let rows = rect.y..rect.y + rect.height;
+        let tint = |x: u32, y: u32| face.tint_of(frame.pixel(x, y).map(f32::from));
+        let values = rows.flat_map(|y| (rect.x..rect.x + rect.width).map(move |x| tint(x, y))).collect();
+        Self { width: rect.width as i32, height: rect.height as i32, values }
+    }
+
+    fn contrast(&self, disc: Disc) -> Contrast {
+        let reach = 1.45 * disc.radius + 1.0;
+        let (inner2, near2, far2) = (disc.radius.powi(2), (disc.radius + 0.7).powi(2), reach * reach);
+        let (mut inside, mut inside_n) = (0.0_f32, 0.0_f32);
+        let mut around = [(0.0_f32, 0.0_f32); SECTORS];
+        for y in ((disc.y - reach) as i32).max(0)..((disc.y + reach) as i32 + 1).min(self.height) {
+            for x in ((disc.x - reach) as i32).max(0)..((disc.x + reach) as i32 + 1).min(self.width) {
+                let (dx, dy) = (x as f32 + 0.5 - disc.x, y as f32 + 0.5 - disc.y);
+                let distance2 = dx * dx + dy * dy;
+                let tint = self.values[(y * self.width + x) as usize];
+                if distance2 <= inner2 {
+                    inside += tint;
+                    inside_n += 1.0;
+                } else if (near2..far2).contains(&distance2) {
+                    let (sum, n) = &mut around[sector(dx, dy)];
+                    *sum += tint;
+                    *n += 1.0;
+                }
+            }
+        }
+        let inside = inside / inside_n.max(1.0);
+        let total = around.iter().fold((0.0, 0.0), |(sum, n), (s, k)| (sum + s, n + k));
+        let mut sides = around.map(|(sum, n)| (inside - sum / n.max(1.0)) / inside.max(0.05));
+        sides.sort_by(f32::total_cmp);
+        Contrast { overall: inside - total.0 / f32::max(total.1, 1.0), weakest: sides[1] }
+    }
+}
+
+/// Which of eight directions (0: right to below right, onwards clockwise).
+fn sector(dx: f32, dy: f32) -> usize {
+    let steep = usize::from(dy.abs() > dx.abs());
+    match (dx >= 0.0, dy >= 0.0) {
+        (true, true) => steep,
+        (false, true) => 3 - steep,
+        (false, false) => 4 + steep,
+        (true, false) => 7 - steep,
+    }
+}
