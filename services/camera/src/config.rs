@@ -1,0 +1,48 @@
+//! What a camera is told at its start.
+
+use serde::{Deserialize, Serialize};
+
+/// One camera of one vehicle.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CameraConfig {
+    /// The fleet's id.
+    pub fleet: String,
+    /// The vehicle that carries the camera.
+    pub vehicle: String,
+    /// The camera's id.
+    pub camera: String,
+    /// Where pictures come from: a directory or glob, `mcap:FILE#topic`, or `sim:SCENE?seed=N`.
+    pub source: String,
+    /// Pictures per second, for sources that do not bring their own times, within 0.01..=240.
+    pub frame_rate_hz: f64,
+    /// JPEG quality of rendered pictures, 1..=100.
+    pub jpeg_quality: u8,
+    /// What happens at the end of a directory or recording.
+    pub at_end: AtEnd,
+}
+
+/// What happens at the end of a source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AtEnd {
+    /// The camera ends.
+    #[default]
+    Stop,
+    /// It begins again, with new times.
+    Repeat,
+}
+
+impl Default for CameraConfig {
+    fn default() -> Self {
+        Self {
+            fleet: "convoy".to_owned(),
+            vehicle: "follower".to_owned(),
+            camera: "front".to_owned(),
+            source: "sim:rink?seed=1".to_owned(),
+            frame_rate_hz: 30.0,
+            jpeg_quality: 90,
+            at_end: AtEnd::default(),
+        }
+    }
+}

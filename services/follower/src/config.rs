@@ -1,0 +1,145 @@
+//! What a follower is told at its start.
+
+use std::collections::BTreeMap;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+use vision::follow::{FollowOptions, Mode};
+use vision::predict::PredictionMethod;
+
+/// One follower vehicle.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FollowerConfig {
+    /// The fleet's id.
+    pub fleet: String,
+    /// This vehicle's id.
+    pub vehicle: String,
+    /// The vehicle whose landmarks are followed.
+    pub leader: String,
+    /// The cameras of this vehicle that are looked through.
+    pub cameras: Vec<String>,
+    /// `faithful` or `adaptive`.
+    pub mode: ModeName,
+    /// `persistence`, `constant-velocity` or `kalman`.
+    pub prediction: PredictionName,
+    /// Where the accepted landmark set and the machine's id are kept.
+    pub state_dir: PathBuf,
+    /// The web face.
+    pub http: HttpConfig,
+    /// The recorder.
+    pub recorder: RecorderConfig,
+}
+
+/// The web face of a vehicle.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct HttpConfig {
+    /// Address and port; beyond loopback it is read-only without a token.
+    pub listen: SocketAddr,
+    /// File that holds the bearer token for changes.
+    pub token_file: Option<PathBuf>,
+    /// Host names that are accepted besides IP addresses, localhost and the machine's name.
+    pub hosts: Vec<String>,
+}
+
+/// The recorder of a vehicle.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RecorderConfig {
+    /// Whether to record from the start.
+    pub enabled: bool,
+    /// Where recordings go.
+    pub directory: PathBuf,
+    /// A new file is begun beyond this size.
+    pub max_file_bytes: u64,
+    /// A new file is begun after this time.
+    pub max_file_s: u64,
+    /// The oldest recordings are deleted while less than this is free on the disk; 0 keeps all.
+    pub min_free_bytes: u64,
+}
+
+/// Names of the registration modes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModeName {
+    /// The thesis's method with fixed statistics.
+    Faithful,
+    /// With everything that real cameras need.
+    #[default]
+    Adaptive,
+}
+
+/// Names of the predictors that can drive a gate.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PredictionName {
+    /// Where it was.
+    Persistence,
+    /// Equation 4.1 with the sign it was meant to have.
+    ConstantVelocity,
+    /// Position, velocity, log area and its rate.
+    #[default]
+    Kalman,
+}
+
+impl Default for FollowerConfig {
+    fn default() -> Self {
+        Self {
+            fleet: "convoy".to_owned(),
+            vehicle: "follower".to_owned(),
+            leader: "leader".to_owned(),
+            cameras: vec!["front".to_owned()],
+            mode: ModeName::default(),
+            prediction: PredictionName::default(),
+            state_dir: PathBuf::from("state/follower"),
+            http: HttpConfig::default(),
+            recorder: RecorderConfig::default(),
+        }
+    }
+}
+
+impl Default for HttpConfig {
+    fn default() -> Self {
+        Self { listen: SocketAddr::from(([127, 0, 0, 1], 8080)), token_file: None, hosts: Vec::new() }
+    }
+}
+
+impl Default for RecorderConfig {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            directory: PathBuf::from("recordings"),
+            max_file_bytes: 4 << 30,
+            max_file_s: 3600,
+            min_free_bytes: 1 << 30,
+        }
+    }
+}
+
+impl FollowerConfig {
+    /// The configuration as a recording keeps it: nothing in it is secret, since the token stands in a file of its own.
+    pub(crate) fn as_metadata(&self) -> BTreeMap<String, String> {
+        let value = serde_json::to_value(self).unwrap_or_default();
+        let members = value.as_object().into_iter().flatten();
+        members.map(|(name, value)| (name.clone(), value.to_string())).collect()
+    }
+
+    /// What the state machine of each camera is told.
+    #[must_use]
+    pub fn follow_options(&self) -> FollowOptions {
+        FollowOptions {
+            mode: match self.mode {
+                ModeName::Faithful => Mode::Faithful,
+                ModeName::Adaptive => Mode::Adaptive,
+            },
+            prediction: match self.prediction {
+                PredictionName::Persistence => PredictionMethod::Persistence,
+                PredictionName::ConstantVelocity => PredictionMethod::ConstantVelocity,
+                PredictionName::Kalman => PredictionMethod::Kalman,
+            },
+            ..FollowOptions::default()
+        }
+    }
+}

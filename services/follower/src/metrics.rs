@@ -1,0 +1,61 @@
+//! `/metrics`: counted where things happen, put together when somebody asks. There is no global recorder, so two
+//! followers in one process never mix their figures.
+
+use std::sync::Arc;
+
+use metrics::{counter, gauge};
+use metrics_exporter_prometheus::PrometheusBuilder;
+
+use crate::counters::LandmarkCounters;
+use crate::station::Station;
+use crate::status::VehicleStatus;
+
+/// Everything in the Prometheus text format.
+pub(crate) fn exposition(
+    status: &VehicleStatus,
+    stations: &[Arc<Station>],
+    landmarks: &LandmarkCounters,
+) -> String {
+    let recorder = PrometheusBuilder::new().build_recorder();
+    metrics::with_local_recorder(&recorder, || {
+        vehicle(status);
+        stations.iter().for_each(|station| camera(station));
+        for (reason, count) in landmarks.by_reason() {
+            counter!("waymark_landmark_messages_ignored_total", "reason" => reason).absolute(count);
+        }
+    });
+    recorder.handle().render()
+}
+
+fn vehicle(status: &VehicleStatus) {
+    let yes = |condition: bool| f64::from(u8::from(condition));
+    gauge!("waymark_uptime_seconds").set(status.uptime_s);
+    gauge!("waymark_landmarks").set(status.landmarks as f64);
+    gauge!("waymark_leader_present").set(yes(status.leader.present));
+    gauge!("waymark_router_connected").set(yes(status.router.connected));
+    gauge!("waymark_recorder_failed").set(yes(status.recorder.state == "failed"));
+    gauge!("waymark_recorder_file_bytes").set(status.recorder.bytes as f64);
+    counter!("waymark_recorder_lost_messages_total").absolute(status.recorder.lost);
+    if let Some(free_bytes) = status.recorder.free_bytes {
+        gauge!("waymark_recorder_free_bytes").set(free_bytes as f64);
+    }
+}
+
+fn camera(station: &Station) {
+    let camera = station.id().to_owned();
+    let status = station.status();
+    counter!("waymark_frames_registered_total", "camera" => camera.clone()).absolute(station.registered());
+    gauge!("waymark_frames_per_second", "camera" => camera.clone()).set(status.fps);
+    if let Some(age_ms) = status.age_ms {
+        gauge!("waymark_frame_age_seconds", "camera" => camera.clone()).set(age_ms * 1e-3);
+    }
+    if let Some(latency_ms) = status.latency_ms {
+        gauge!("waymark_frame_latency_seconds", "camera" => camera.clone()).set(latency_ms * 1e-3);
+    }
+    for (reason, count) in status.dropped.by_reason() {
+        counter!("waymark_frames_dropped_total", "camera" => camera.clone(), "reason" => reason)
+            .absolute(count);
+    }
+    let measured = status.landmarks.iter().filter(|landmark| landmark.result == "measured").count();
+    gauge!("waymark_landmarks_measured", "camera" => camera).set(measured as f64);
+}

@@ -1,0 +1,105 @@
+//! One camera from the subscription to the results: its thread, and everything around it.
+
+use std::sync::Arc;
+
+use ingest::camera_thread::{CameraThread, Outlets, Registered};
+use recording::Journal;
+use tokio::sync::{mpsc, watch};
+use tokio::task::JoinHandle;
+use vision::LandmarkSet;
+use vision::follow::FollowOptions;
+use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
+use zenoh::Session;
+use zenoh::pubsub::Subscriber;
+
+use crate::calibration;
+use crate::counters::IntakeCounters;
+use crate::error::FollowerError;
+use crate::intake::Intake;
+use crate::results::Results;
+use crate::station::Station;
+use crate::topics::CameraTopics;
+use crate::web::Face;
+
+/// Results that may wait to go out: some seconds of a fast camera.
+const WAITING_RESULTS: usize = 256;
+
+/// A camera that is ready to look.
+pub(crate) struct Post {
+    id: Id,
+    thread: CameraThread,
+    intake: Intake,
+    results: Results,
+    waiting: mpsc::Receiver<Arc<Registered>>,
+    station: Arc<Station>,
+}
+
+/// A camera that looks.
+pub(crate) struct MannedPost {
+    thread: CameraThread,
+    subscriber: Subscriber<()>,
+    _calibration: Subscriber<()>,
+    handing_on: JoinHandle<()>,
+    station: Arc<Station>,
+}
+
+impl Post {
+    /// Starts the camera's thread; no picture reaches it yet.
+    pub(crate) async fn set_up(
+        id: Id,
+        options: FollowOptions,
+        own: &VehicleKeys,
+        session: &Session,
+        journal: &Arc<Journal>,
+        landmarks: watch::Receiver<Arc<LandmarkSet>>,
+    ) -> Result<Self, FollowerError> {
+        let (every, waiting) = mpsc::channel(WAITING_RESULTS);
+        let (latest, newest) = watch::channel(None);
+        let thread = CameraThread::spawn(id.as_str(), options, landmarks, Outlets { every, latest })
+            .map_err(|source| FollowerError::Thread { camera: id.to_string(), source })?;
+        let counters = Arc::new(IntakeCounters::default());
+        let topics = CameraTopics::new(own, &id);
+        let intake =
+            Intake::new(topics.clone(), Arc::clone(journal), thread.mailbox(), Arc::clone(&counters));
+        let results = Results::declare(session, own, &id, topics, Arc::clone(journal)).await?;
+        let station = Station::new(id.as_str(), thread.mailbox(), counters, thread.counters(), newest);
+        Ok(Self { id, thread, intake, results, waiting, station: Arc::new(station) })
+    }
+
+    pub(crate) fn station(&self) -> Arc<Station> {
+        Arc::clone(&self.station)
+    }
+
+    /// Lets pictures in.
+    pub(crate) async fn begin(
+        self,
+        session: &Session,
+        own: &VehicleKeys,
+        face: Arc<Face>,
+    ) -> Result<MannedPost, FollowerError> {
+        let Self { id, thread, mut intake, results, waiting, station } = self;
+        let (topics, journal) = (CameraTopics::new(own, &id), Arc::clone(&face.journal));
+        let handing_on = tokio::spawn(results.run(waiting, Arc::clone(&station), face));
+        let subscriber = session
+            .declare_subscriber(own.camera(&id, CameraStream::Image))
+            .callback_mut(move |sample| intake.accept(&sample))
+            .await
+            .map_err(FollowerError::zenoh("subscribing to a camera's pictures"))?;
+        let calibration = calibration::record(session, own, &id, topics, journal).await?;
+        Ok(MannedPost { thread, subscriber, _calibration: calibration, handing_on, station })
+    }
+}
+
+impl MannedPost {
+    /// Takes no more pictures, and waits until everything seen is handed on. Returns the camera's id when its thread
+    /// had panicked.
+    pub(crate) async fn finish(self) -> Option<String> {
+        if let Err(error) = self.subscriber.undeclare().await {
+            tracing::debug!(%error, "subscription ended with the session");
+        }
+        let thread = self.thread;
+        let sound = tokio::task::spawn_blocking(move || thread.finish()).await.unwrap_or(false);
+        let handed_on = self.handing_on.await.is_ok();
+        (!(sound && handed_on)).then(|| self.station.id().to_owned())
+    }
+}

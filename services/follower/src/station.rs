@@ -1,0 +1,107 @@
+//! One camera of this vehicle as status and page see it.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use http_face::STALE_AFTER;
+use ingest::camera_thread::{CameraCounters, Registered};
+use ingest::encoded::EncodedFrame;
+use ingest::mailbox::Mailbox;
+use tokio::sync::watch;
+
+use crate::counters::IntakeCounters;
+use crate::fps::RateMeter;
+use crate::status::{CameraStatus, Dropped, landmarks_from_outcome};
+use crate::tap::now_ns;
+
+/// Frames a second are counted over this time.
+const RATE_SPAN: Duration = Duration::from_secs(3);
+
+/// What is known of one camera.
+pub(crate) struct Station {
+    id: String,
+    mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
+    intake: Arc<IntakeCounters>,
+    thread: Arc<CameraCounters>,
+    latest: watch::Receiver<Option<Arc<Registered>>>,
+    rate: Mutex<RateMeter>,
+}
+
+impl Station {
+    pub(crate) fn new(
+        id: &str,
+        mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
+        intake: Arc<IntakeCounters>,
+        thread: Arc<CameraCounters>,
+        latest: watch::Receiver<Option<Arc<Registered>>>,
+    ) -> Self {
+        let rate = Mutex::new(RateMeter::over(RATE_SPAN));
+        Self { id: id.to_owned(), mailbox, intake, thread, latest, rate }
+    }
+
+    pub(crate) fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// Takes note that a frame was registered.
+    pub(crate) fn count_frame(&self, at: Instant) {
+        self.rate.lock().unwrap_or_else(PoisonError::into_inner).observe(at);
+    }
+
+    /// Whether frames are coming: `Ok` with the newest one's age, or how it is instead.
+    pub(crate) fn liveness(&self) -> Result<Duration, String> {
+        match self.latest.borrow().as_ref().map(|newest| newest.finished_at.elapsed()) {
+            None => Err(format!("camera {} has sent nothing yet", self.id)),
+            Some(age) if age > STALE_AFTER => {
+                Err(format!("camera {} has sent nothing for {:.1} s", self.id, age.as_secs_f64()))
+            }
+            Some(age) => Ok(age),
+        }
+    }
+
+    pub(crate) fn dropped(&self) -> Dropped {
+        Dropped {
+            missed: self.intake.missed_count(),
+            replaced: self.mailbox.replaced(),
+            undecodable: self.thread.undecodable(),
+            refused: self.intake.refused_count(),
+            unread: self.thread.unread(),
+        }
+    }
+
+    pub(crate) fn registered(&self) -> u64 {
+        self.thread.registered()
+    }
+
+    pub(crate) fn status(&self) -> CameraStatus {
+        let newest = self.latest.borrow().clone();
+        let age = newest.as_ref().map(|newest| newest.finished_at.elapsed());
+        CameraStatus {
+            id: self.id.clone(),
+            state: match age {
+                None => "waiting",
+                Some(age) if age > STALE_AFTER => "stale",
+                Some(_) => "live",
+            },
+            sequence: newest.as_ref().map(|newest| newest.outcome.sequence),
+            age_ms: age.map(milliseconds),
+            fps: self.rate.lock().unwrap_or_else(PoisonError::into_inner).rate_hz(Instant::now()),
+            latency_ms: newest.as_ref().map(|newest| latency_ms(newest)),
+            processing_ms: newest
+                .as_ref()
+                .map(|newest| milliseconds(newest.decode_time + newest.register_time)),
+            dropped: self.dropped(),
+            landmarks: newest.map_or_else(Vec::new, |newest| landmarks_from_outcome(&newest.outcome)),
+        }
+    }
+}
+
+fn milliseconds(duration: Duration) -> f64 {
+    duration.as_secs_f64() * 1e3
+}
+
+/// From capture to the end of registration, by this machine's clock; meaningless when the camera's clock is another.
+fn latency_ms(registered: &Registered) -> f64 {
+    let finished_ns = i128::from(now_ns()) - registered.finished_at.elapsed().as_nanos() as i128;
+    (finished_ns - i128::from(registered.outcome.captured_at.nanos)) as f64 * 1e-6
+}

@@ -1,0 +1,169 @@
+//! The follower's routes (contract section 8) on the shared web face.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use http_face::{
+    Cameras, Check, Events, Picture, Problem, conditional, entity_tag, health, metrics_text, page,
+};
+use ingest::camera_thread::Registered;
+use recording::{Command, Journal};
+use tokio::sync::watch;
+use vision::LandmarkSet;
+use zenoh::Session;
+
+use crate::landmark_documents::{landmark_document, set_document};
+use crate::leader_watch::LeaderWatch;
+use crate::metrics;
+use crate::station::Station;
+use crate::status::{RecorderStatus, RouterStatus, VehicleStatus};
+
+/// Everything that the routes look at; nothing of it can be changed from here but the recorder.
+pub(crate) struct Face {
+    pub(crate) vehicle: String,
+    pub(crate) instance: String,
+    pub(crate) started_at: Instant,
+    pub(crate) session: Session,
+    pub(crate) landmarks: watch::Receiver<Arc<LandmarkSet>>,
+    pub(crate) leader: LeaderWatch,
+    pub(crate) stations: Vec<Arc<Station>>,
+    pub(crate) journal: Arc<Journal>,
+    pub(crate) cameras: Arc<Cameras<Registered>>,
+    pub(crate) events: Arc<Events>,
+    pub(crate) landmark_counters: Arc<crate::counters::LandmarkCounters>,
+}
+
+/// All routes of a follower.
+pub(crate) fn routes(face: Arc<Face>) -> Router {
+    let cameras = face.cameras.routes();
+    Router::new()
+        .route("/livez", get(|| async { health(&[Check::pass("process", "answers")]) }))
+        .route("/readyz", get(ready))
+        .route("/metrics", get(metrics))
+        .route("/api/v1/status", get(status))
+        .route("/api/v1/landmarks", get(landmarks))
+        .route("/api/v1/landmarks/{id}", get(landmark))
+        .route("/api/v1/recorder", get(recorder))
+        .route("/api/v1/recorder/{command}", post(command))
+        .route("/api/v1/events", get(events))
+        .with_state(face)
+        .merge(cameras)
+        .merge(page())
+}
+
+impl Face {
+    pub(crate) async fn connected(&self) -> bool {
+        let info = self.session.info();
+        info.routers_zid().await.next().is_some() || info.peers_zid().await.next().is_some()
+    }
+
+    pub(crate) async fn status(&self) -> VehicleStatus {
+        VehicleStatus {
+            vehicle: self.vehicle.clone(),
+            role: "follower",
+            version: env!("CARGO_PKG_VERSION"),
+            uptime_s: self.started_at.elapsed().as_secs_f64(),
+            leader: self.leader.status(),
+            router: RouterStatus { connected: self.connected().await },
+            landmarks: self.landmarks.borrow().landmarks.len(),
+            cameras: self.stations.iter().map(|station| station.status()).collect(),
+            recorder: RecorderStatus::from(self.journal.status()),
+        }
+    }
+
+    /// Shows a registered frame to whoever looks.
+    pub(crate) fn show(&self, station: &Station, registered: Arc<Registered>) {
+        station.count_frame(registered.finished_at);
+        if let Err(error) = self.events.publish("camera", &station.status()) {
+            tracing::error!(%error, "an event could not be written as JSON");
+        }
+        if let Some(feed) = self.cameras.feed(station.id()) {
+            feed.publish(Picture {
+                sequence: registered.outcome.sequence,
+                captured_at_ns: registered.outcome.captured_at.nanos,
+                received_at: registered.finished_at.into(),
+                source: registered,
+            });
+        }
+    }
+
+    async fn checks(&self) -> Vec<Check> {
+        let mut checks = vec![match self.connected().await {
+            true => Check::pass("router", "connected"),
+            false => Check::fail("router", "no router or peer is connected; is `waymark router` reachable?"),
+        }];
+        checks.extend(self.stations.iter().map(|station| match station.liveness() {
+            Ok(age) => Check::pass(
+                format!("camera {}", station.id()),
+                format!("{:.0} ms old", age.as_secs_f64() * 1e3),
+            ),
+            Err(reason) => Check::fail(format!("camera {}", station.id()), reason),
+        }));
+        let recorder = self.journal.status();
+        checks.push(match recorder.state {
+            recording::State::Failed => Check::fail("recorder", recorder.reason.unwrap_or_default()),
+            recording::State::Recording => Check::pass("recorder", "recording"),
+            recording::State::Off => Check::pass("recorder", "off"),
+        });
+        checks
+    }
+}
+
+type Shared = State<Arc<Face>>;
+
+async fn ready(State(face): Shared) -> Response {
+    health(&face.checks().await)
+}
+
+async fn metrics(State(face): Shared) -> Response {
+    metrics_text(metrics::exposition(&face.status().await, &face.stations, &face.landmark_counters))
+}
+
+async fn status(State(face): Shared) -> Json<VehicleStatus> {
+    Json(face.status().await)
+}
+
+async fn landmarks(State(face): Shared, headers: HeaderMap) -> Response {
+    let set = Arc::clone(&face.landmarks.borrow());
+    document(&headers, &set_document(&set))
+}
+
+async fn landmark(
+    State(face): Shared,
+    Path(id): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let set = Arc::clone(&face.landmarks.borrow());
+    let landmark = set.landmarks.iter().find(|landmark| landmark.id == id);
+    let landmark = landmark.ok_or_else(|| Problem::not_found(&format!("landmark {id:?}")))?;
+    Ok(document(&headers, &landmark_document(landmark)))
+}
+
+fn document(request: &HeaderMap, value: &serde_json::Value) -> Response {
+    let content = value.to_string().into_bytes();
+    conditional(request, &entity_tag(&content), "application/json", content.into())
+}
+
+async fn recorder(State(face): Shared) -> Json<RecorderStatus> {
+    Json(face.journal.status().into())
+}
+
+async fn command(State(face): Shared, Path(command): Path<String>) -> Result<Response, Problem> {
+    let command = match command.as_str() {
+        "start" => Command::Start,
+        "stop" => Command::Stop,
+        "split" => Command::Split,
+        other => return Err(Problem::not_found(&format!("recorder command {other:?}"))),
+    };
+    let _counted_by_the_journal = face.journal.command(command);
+    Ok((StatusCode::ACCEPTED, Json(RecorderStatus::from(face.journal.status()))).into_response())
+}
+
+async fn events(State(face): Shared, headers: HeaderMap) -> Result<Response, Problem> {
+    face.events.respond(&headers)
+}
