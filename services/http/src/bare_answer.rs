@@ -4,23 +4,26 @@
 //! answers with a bare 400, 414 or 431. Clients are promised a problem document for every error, so such an answer
 //! is recognised on its way out, by lacking the header that every answer of ours carries, and replaced.
 
+use crate::counters::{Counters, Refusal};
 use crate::problem::{PROBLEM_JSON, Problem, default_detail};
 use axum::http::StatusCode;
 use std::io;
 use std::pin::Pin;
+use std::sync::Arc;
 use std::task::{Context, Poll, ready};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
 /// A stream on which bare error answers become problems.
 pub(crate) struct BareAnswers<S> {
     stream: S,
+    counters: Arc<Counters>,
     /// The answer being sent in place of a bare one, and how much of it is sent.
     replacement: Option<(Vec<u8>, usize)>,
 }
 
 impl<S> BareAnswers<S> {
-    pub(crate) const fn new(stream: S) -> Self {
-        Self { stream, replacement: None }
+    pub(crate) const fn new(stream: S, counters: Arc<Counters>) -> Self {
+        Self { stream, counters, replacement: None }
     }
 }
 
@@ -38,7 +41,10 @@ impl<S: AsyncWrite + Unpin> AsyncWrite for BareAnswers<S> {
     fn poll_write(mut self: Pin<&mut Self>, cx: &mut Context<'_>, bytes: &[u8]) -> Poll<io::Result<usize>> {
         let this = &mut *self;
         if this.replacement.is_none() {
-            this.replacement = bare_status(bytes).map(|status| (problem_answer(status), 0));
+            this.replacement = bare_status(bytes).map(|status| {
+                this.counters.count(Refusal::Unparseable);
+                (problem_answer(status), 0)
+            });
         }
         let Some((answer, sent)) = &mut this.replacement else {
             return Pin::new(&mut this.stream).poll_write(cx, bytes);
@@ -88,7 +94,6 @@ fn bare_status(bytes: &[u8]) -> Option<StatusCode> {
 }
 
 fn problem_answer(status: StatusCode) -> Vec<u8> {
-    metrics::counter!("waymark_http_refused_total", "reason" => "unparseable").increment(1);
     let body = Problem::new(status, default_detail(status)).to_json().to_string();
     let head = format!(
         "HTTP/1.1 {status}\r\ncontent-type: {PROBLEM_JSON}\r\nx-content-type-options: nosniff\r\n\
@@ -105,7 +110,7 @@ mod tests {
 
     async fn sent(bytes: &[u8]) -> String {
         let (ours, mut theirs) = tokio::io::duplex(1 << 16);
-        BareAnswers::new(ours).write_all(bytes).await.unwrap();
+        BareAnswers::new(ours, Arc::default()).write_all(bytes).await.unwrap();
         let mut text = String::new();
         theirs.read_to_string(&mut text).await.unwrap();
         text

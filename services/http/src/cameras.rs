@@ -52,6 +52,11 @@ impl<T: Send + Sync + 'static> Cameras<T> {
         self.cameras.get(id).map(|camera| &camera.feed)
     }
 
+    /// Views encoded since the start, by camera: none while nobody looks.
+    pub fn encoded(&self) -> impl Iterator<Item = (&str, u64)> {
+        self.cameras.iter().map(|(id, camera)| (id.as_str(), camera.views.encoded()))
+    }
+
     /// `/api/v1/cameras`, and below it for each camera `frame.jpg`, `overlay.jpg`, `overlay.png` and `stream.mjpeg`.
     pub fn routes(self: &Arc<Self>) -> Router {
         Router::new()

@@ -1,5 +1,6 @@
 //! Server-sent events (WHATWG HTML section 9.2) with one id counter for the process and a bounded memory.
 
+use crate::counters::Refusal;
 use crate::problem::Problem;
 use axum::body::{Body, Bytes};
 use axum::http::header::CONTENT_TYPE;
@@ -79,11 +80,11 @@ impl Events {
     /// 503 when there are too many readers.
     pub fn respond(&self, request: &HeaderMap) -> Result<Response, Problem> {
         let permit = Arc::clone(&self.readers).try_acquire_owned().map_err(|_| {
-            metrics::counter!("waymark_http_refused_total", "reason" => "readers").increment(1);
             Problem::unavailable(
                 format!("{MAX_READERS} readers follow events already"),
                 Duration::from_secs(5),
             )
+            .because(Refusal::Readers)
         })?;
         let last_id = request
             .get(LAST_EVENT_ID)

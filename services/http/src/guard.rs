@@ -1,5 +1,6 @@
 //! Judges a request by its header alone: is it meant for us, does it come from our page, may it change things.
 
+use crate::counters::Refusal;
 use crate::policy::{Access, Policy};
 use crate::problem::Problem;
 use axum::http::header::{AUTHORIZATION, HOST, ORIGIN};
@@ -7,16 +8,8 @@ use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderName, Method, StatusCode, Uri};
 use std::net::IpAddr;
 
-/// Why a request was turned away, with the label of the counter that goes up.
-#[derive(Debug, PartialEq)]
-pub(crate) struct Refusal {
-    /// `host`, `origin`, `read_only`, `token` or `query`.
-    pub(crate) reason: &'static str,
-    pub(crate) problem: Problem,
-}
-
 /// Judges one request; `own_name` is the machine's name.
-pub(crate) fn judge(parts: &Parts, policy: &Policy, access: Access, own_name: &str) -> Result<(), Refusal> {
+pub(crate) fn judge(parts: &Parts, policy: &Policy, access: Access, own_name: &str) -> Result<(), Problem> {
     check_query(&parts.uri, policy.max_query_bytes)?;
     let host = check_host(parts, policy, own_name)?;
     if is_change(&parts.method) {
@@ -31,26 +24,26 @@ pub(crate) fn is_change(method: &Method) -> bool {
     !matches!(*method, Method::GET | Method::HEAD | Method::OPTIONS)
 }
 
-fn refuse(reason: &'static str, status: StatusCode, detail: String) -> Refusal {
-    Refusal { reason, problem: Problem::new(status, detail) }
+fn refuse(refusal: Refusal, status: StatusCode, detail: String) -> Problem {
+    Problem::new(status, detail).because(refusal)
 }
 
-fn check_query(uri: &Uri, max_query_bytes: usize) -> Result<(), Refusal> {
+fn check_query(uri: &Uri, max_query_bytes: usize) -> Result<(), Problem> {
     let length = uri.query().map_or(0, str::len);
     if length <= max_query_bytes {
         return Ok(());
     }
     let detail = format!("the query has {length} bytes; allowed are {max_query_bytes}");
-    Err(refuse("query", StatusCode::URI_TOO_LONG, detail))
+    Err(refuse(Refusal::Query, StatusCode::URI_TOO_LONG, detail))
 }
 
 /// Refuses names that are not ours, so that a page elsewhere cannot reach us by rebinding its own name.
-fn check_host(parts: &Parts, policy: &Policy, own_name: &str) -> Result<String, Refusal> {
+fn check_host(parts: &Parts, policy: &Policy, own_name: &str) -> Result<String, Problem> {
     let authority = parts.uri.authority().map(|authority| authority.as_str());
     let header = parts.headers.get(HOST).and_then(|host| host.to_str().ok());
     let Some(host) = authority.or(header) else {
         let detail = "the request has no Host header (RFC 9112 section 3.2)".to_owned();
-        return Err(refuse("host", StatusCode::BAD_REQUEST, detail));
+        return Err(refuse(Refusal::Host, StatusCode::BAD_REQUEST, detail));
     };
     if is_own_host(host, policy, own_name) {
         return Ok(host.to_ascii_lowercase());
@@ -59,7 +52,7 @@ fn check_host(parts: &Parts, policy: &Policy, own_name: &str) -> Result<String, 
         "{host:?} is not a name of this service; use its IP address, localhost or {own_name:?}, \
          or list the name in http.hosts"
     );
-    Err(refuse("host", StatusCode::FORBIDDEN, detail))
+    Err(refuse(Refusal::Host, StatusCode::FORBIDDEN, detail))
 }
 
 fn is_own_host(host: &str, policy: &Policy, own_name: &str) -> bool {
@@ -81,7 +74,7 @@ fn without_port(host: &str) -> &str {
 }
 
 /// A browser says where a change comes from; only our own page may (RFC 6454, Fetch Metadata).
-fn check_origin(headers: &HeaderMap, host: &str) -> Result<(), Refusal> {
+fn check_origin(headers: &HeaderMap, host: &str) -> Result<(), Problem> {
     const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
     let cross_site = headers.get(SEC_FETCH_SITE).is_some_and(|site| site != "same-origin" && site != "none");
     let foreign = headers.get(ORIGIN).is_some_and(|origin| {
@@ -92,10 +85,10 @@ fn check_origin(headers: &HeaderMap, host: &str) -> Result<(), Refusal> {
         return Ok(());
     }
     let detail = "changes are taken from this service's own page or from programs, not from other sites";
-    Err(refuse("origin", StatusCode::FORBIDDEN, detail.to_owned()))
+    Err(refuse(Refusal::Origin, StatusCode::FORBIDDEN, detail.to_owned()))
 }
 
-fn check_permission(headers: &HeaderMap, policy: &Policy, access: Access) -> Result<(), Refusal> {
+fn check_permission(headers: &HeaderMap, policy: &Policy, access: Access) -> Result<(), Problem> {
     let presented = headers
         .get(AUTHORIZATION)
         .and_then(|value| value.to_str().ok())
@@ -107,12 +100,12 @@ fn check_permission(headers: &HeaderMap, policy: &Policy, access: Access) -> Res
         (Access::Token, Some(token), Some(presented)) if token.matches(presented) => Ok(()),
         (Access::Token, _, _) => {
             let detail = "changes need the header `Authorization: Bearer` with the token of --token-file";
-            Err(refuse("token", StatusCode::UNAUTHORIZED, detail.to_owned()))
+            Err(refuse(Refusal::Token, StatusCode::UNAUTHORIZED, detail.to_owned()))
         }
         (Access::ReadOnly, _, _) => {
             let detail = "read-only: other machines can connect and no token is set; start with --token-file \
                           or listen on 127.0.0.1";
-            Err(refuse("read_only", StatusCode::FORBIDDEN, detail.to_owned()))
+            Err(refuse(Refusal::ReadOnly, StatusCode::FORBIDDEN, detail.to_owned()))
         }
     }
 }
@@ -136,7 +129,7 @@ mod tests {
         let (parts, ()) = request.body(()).unwrap().into_parts();
         judge(&parts, policy, access, "rover")
             .err()
-            .map(|refusal| (refusal.reason, refusal.problem.status().as_u16()))
+            .map(|problem| (problem.refusal.map_or("", Refusal::name), problem.status().as_u16()))
     }
 
     #[test]

@@ -16,11 +16,14 @@
 //! # let _ = report; Ok(()) }
 //! ```
 //!
+//! What was turned away is counted by reason in [`Counters`], which routes find as `Extension<Arc<Counters>>`.
 //! Every answer carries `X-Waymark-Access`: `open`, `token` or `read_only` (see [`Access`]).
 
 mod bare_answer;
 mod cameras;
 mod conditional;
+mod connection;
+mod counters;
 mod events;
 mod guard;
 mod health;
@@ -38,6 +41,7 @@ mod stall;
 
 pub use cameras::Cameras;
 pub use conditional::{conditional, entity_tag};
+pub use counters::{Counters, Refusal};
 pub use events::Events;
 pub use health::{Check, health};
 pub use metrics_text::metrics_text;

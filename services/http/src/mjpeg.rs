@@ -4,6 +4,7 @@
 //! stops reading is cut off by the connection's stall guard.
 
 use crate::cameras::{Camera, provenance};
+use crate::counters::Refusal;
 use crate::pictures::{Picture, STALE_AFTER};
 use crate::problem::Problem;
 use crate::renditions::PictureRequest;
@@ -38,10 +39,9 @@ impl Default for StreamSlots {
 impl StreamSlots {
     pub(crate) fn take(&self) -> Result<OwnedSemaphorePermit, Problem> {
         Arc::clone(&self.0).try_acquire_owned().map_err(|_| {
-            metrics::counter!("waymark_http_refused_total", "reason" => "streams").increment(1);
             let detail =
                 format!("{MAX_STREAMS} streams are being watched already; close one or use overlay.jpg");
-            Problem::unavailable(detail, Duration::from_secs(5))
+            Problem::unavailable(detail, Duration::from_secs(5)).because(Refusal::Streams)
         })
     }
 }

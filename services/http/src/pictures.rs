@@ -60,11 +60,6 @@ impl<T> PictureFeed<T> {
         self.newest.send_replace(Some(picture));
     }
 
-    /// Forgets the picture, when its camera is taken away.
-    pub fn clear(&self) {
-        self.newest.send_replace(None);
-    }
-
     /// The newest picture, when there is one and it is not stale.
     ///
     /// # Errors

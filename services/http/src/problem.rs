@@ -1,5 +1,6 @@
 //! Errors as `application/problem+json` (RFC 9457).
 
+use crate::counters::Refusal;
 use axum::body::Body;
 use axum::http::header::{ALLOW, CONTENT_TYPE, RETRY_AFTER};
 use axum::http::{HeaderValue, Response, StatusCode};
@@ -20,13 +21,14 @@ pub struct Problem {
     detail: String,
     members: Map<String, Value>,
     retry_after: Option<Duration>,
+    pub(crate) refusal: Option<Refusal>,
 }
 
 impl Problem {
     /// A problem with this status; `detail` tells the user what is wrong and what to do.
     #[must_use]
     pub fn new(status: StatusCode, detail: impl Into<String>) -> Self {
-        Self { status, detail: detail.into(), members: Map::new(), retry_after: None }
+        Self { status, detail: detail.into(), members: Map::new(), retry_after: None, refusal: None }
     }
 
     /// 404: `what` does not exist.
@@ -59,6 +61,12 @@ impl Problem {
         self
     }
 
+    /// Says which counter goes up when this is sent.
+    pub(crate) const fn because(mut self, refusal: Refusal) -> Self {
+        self.refusal = Some(refusal);
+        self
+    }
+
     /// The status code.
     #[must_use]
     pub const fn status(&self) -> StatusCode {
@@ -84,6 +92,10 @@ impl IntoResponse for Problem {
         response.headers_mut().insert(CONTENT_TYPE, HeaderValue::from_static(PROBLEM_JSON));
         if let Some(after) = self.retry_after {
             response.headers_mut().insert(RETRY_AFTER, HeaderValue::from(after.as_secs().max(1)));
+        }
+        if let Some(refusal) = self.refusal {
+            // Counted where the answer leaves, so that no route needs to know the counters.
+            response.extensions_mut().insert(refusal);
         }
         response
     }

@@ -5,6 +5,7 @@ use crate::problem::Problem;
 use axum::body::Bytes;
 use axum::http::StatusCode;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::{OnceCell, Semaphore};
 
@@ -63,13 +64,20 @@ struct Kept {
 pub(crate) struct Renditions<T> {
     render: Arc<Render<T>>,
     encodes: Arc<Semaphore>,
+    encoded: AtomicU64,
     kept: Mutex<Kept>,
 }
 
 impl<T: Send + Sync + 'static> Renditions<T> {
     /// Views made by `render`.
     pub(crate) fn new(render: Arc<Render<T>>) -> Self {
-        Self { render, encodes: Arc::new(Semaphore::new(MAX_ENCODES)), kept: Mutex::default() }
+        let encodes = Arc::new(Semaphore::new(MAX_ENCODES));
+        Self { render, encodes, encoded: AtomicU64::new(0), kept: Mutex::default() }
+    }
+
+    /// Views encoded since the start.
+    pub(crate) fn encoded(&self) -> u64 {
+        self.encoded.load(Ordering::Relaxed)
     }
 
     /// The view of this picture, made now unless another viewer had it made already.
@@ -102,7 +110,7 @@ impl<T: Send + Sync + 'static> Renditions<T> {
         let permit =
             Arc::clone(&self.encodes).acquire_owned().await.map_err(|error| failed(error.to_string()))?;
         let render = Arc::clone(&self.render);
-        metrics::counter!("waymark_http_encodes_total").increment(1);
+        self.encoded.fetch_add(1, Ordering::Relaxed);
         let encoded = tokio::task::spawn_blocking(move || {
             let _permit = permit;
             render(&source, &request)
@@ -118,7 +126,6 @@ impl<T: Send + Sync + 'static> Renditions<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::atomic::{AtomicUsize, Ordering};
     use tokio::time::Instant;
 
     fn request(quality: u8) -> PictureRequest {
@@ -130,17 +137,14 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn many_viewers_cost_one_encode() {
-        let encodes = Arc::new(AtomicUsize::new(0));
-        let counted = Arc::clone(&encodes);
-        let views = Renditions::new(Arc::new(move |source: &u8, request: &PictureRequest| {
-            counted.fetch_add(1, Ordering::Relaxed);
-            Ok(vec![*source, request.quality])
-        }));
+    async fn many_viewers_cost_one_encode_and_none_cost_nothing() {
+        let draw = |source: &u8, request: &PictureRequest| Ok(vec![*source, request.quality]);
+        let views = Renditions::new(Arc::new(draw));
+        assert_eq!(views.encoded(), 0);
         let (picture, request) = (picture(1), request(80));
         let all = futures_util::future::join_all((0..50).map(|_| views.view(&picture, &request))).await;
         assert!(all.iter().all(|view| view.as_ref().unwrap().as_ref() == [9, 80]));
-        assert_eq!(encodes.load(Ordering::Relaxed), 1);
+        assert_eq!(views.encoded(), 1);
     }
 
     #[tokio::test]

@@ -1,7 +1,9 @@
 //! What surrounds every route: admission, limits, security headers, problems, and the end at shutdown.
 
-use crate::guard::{Refusal, is_change, judge};
-use crate::policy::{Access, Policy};
+use crate::connection::Terms;
+use crate::counters::Refusal;
+use crate::guard::{is_change, judge};
+use crate::policy::Access;
 use crate::problem::{Problem, normalised};
 use axum::Router;
 use axum::body::{Body, Bytes};
@@ -34,16 +36,15 @@ const ACCESS: HeaderName = HeaderName::from_static("x-waymark-access");
 
 #[derive(Clone)]
 pub(crate) struct Shell {
-    policy: Arc<Policy>,
+    terms: Terms,
     access: Access,
-    closing: CancellationToken,
     own_name: Arc<str>,
 }
 
 impl Shell {
-    pub(crate) fn new(policy: Arc<Policy>, access: Access, closing: CancellationToken) -> Self {
+    pub(crate) fn new(terms: Terms, access: Access) -> Self {
         let own_name = rustix::system::uname().nodename().to_string_lossy().into();
-        Self { policy, access, closing, own_name }
+        Self { terms, access, own_name }
     }
 }
 
@@ -57,7 +58,10 @@ async fn pass(State(shell): State<Shell>, request: Request, next: Next) -> Respo
         Ok(request) => answer(&shell, request, next).await,
         Err(problem) => problem.into_response(),
     };
-    response = end_at_shutdown(normalised(response), &shell.closing);
+    if let Some(refusal) = response.extensions().get::<Refusal>() {
+        shell.terms.counters.count(*refusal);
+    }
+    response = end_at_shutdown(normalised(response), &shell.terms.closing);
     if response.status() == StatusCode::UNAUTHORIZED {
         // RFC 6750 section 3
         response.headers_mut().insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
@@ -69,35 +73,33 @@ async fn pass(State(shell): State<Shell>, request: Request, next: Next) -> Respo
 
 async fn admit(shell: &Shell, request: Request) -> Result<Request, Problem> {
     let (mut parts, body) = request.into_parts();
-    judge(&parts, &shell.policy, shell.access, &shell.own_name).map_err(|Refusal { reason, problem }| {
-        metrics::counter!("waymark_http_refused_total", "reason" => reason).increment(1);
-        problem
-    })?;
+    judge(&parts, &shell.terms.policy, shell.access, &shell.own_name)?;
     parts.extensions.insert(shell.access);
+    parts.extensions.insert(Arc::clone(&shell.terms.counters));
     if !is_change(&parts.method) {
         return Ok(Request::from_parts(parts, Body::empty()));
     }
-    let bytes = read_body(body, shell.policy.max_body_bytes, shell.policy.body_timeout).await?;
+    let bytes = read_body(body, shell.terms.policy.max_body_bytes, shell.terms.policy.body_timeout).await?;
     Ok(Request::from_parts(parts, Body::from(bytes)))
 }
 
 async fn read_body(body: Body, limit: usize, patience: Duration) -> Result<Bytes, Problem> {
-    let problem = match timeout(patience, collect(body, limit)).await {
-        Ok(Ok(Some(bytes))) => return Ok(bytes),
+    match timeout(patience, collect(body, limit)).await {
+        Ok(Ok(Some(bytes))) => Ok(bytes),
         Ok(Ok(None)) => {
             let detail = format!("the body is larger than the {limit} bytes allowed");
-            ("body", Problem::new(StatusCode::PAYLOAD_TOO_LARGE, detail).with("max_bytes", limit))
+            let problem = Problem::new(StatusCode::PAYLOAD_TOO_LARGE, detail).with("max_bytes", limit);
+            Err(problem.because(Refusal::Body))
         }
         Ok(Err(error)) => {
-            ("body", Problem::new(StatusCode::BAD_REQUEST, format!("the body broke off: {error}")))
+            let problem = Problem::new(StatusCode::BAD_REQUEST, format!("the body broke off: {error}"));
+            Err(problem.because(Refusal::Body))
         }
         Err(_) => {
             let detail = format!("the body did not arrive within {} s", patience.as_secs());
-            ("slow_body", Problem::new(StatusCode::REQUEST_TIMEOUT, detail))
+            Err(Problem::new(StatusCode::REQUEST_TIMEOUT, detail).because(Refusal::SlowBody))
         }
-    };
-    metrics::counter!("waymark_http_refused_total", "reason" => problem.0).increment(1);
-    Err(problem.1)
+    }
 }
 
 /// The whole body, or `None` when it is larger than `limit`.
@@ -123,7 +125,7 @@ async fn answer(shell: &Shell, request: Request, next: Next) -> Response {
     }
     tokio::select! {
         response = next.run(request) => response,
-        () = shell.closing.cancelled() => {
+        () = shell.terms.closing.cancelled() => {
             Problem::unavailable("the service is shutting down", Duration::from_secs(2)).into_response()
         }
     }

@@ -1,7 +1,9 @@
 //! A connection that gives up on a peer that stops reading.
 
+use crate::counters::{Counters, Refusal};
 use std::io;
 use std::pin::Pin;
+use std::sync::Arc;
 use std::task::{Context, Poll, ready};
 use std::time::Duration;
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
@@ -14,13 +16,14 @@ use tokio::time::{Instant, Sleep};
 pub(crate) struct StallGuard<S> {
     stream: S,
     timeout: Duration,
+    counters: Arc<Counters>,
     /// Runs while a write waits; reset when one makes progress.
     waiting: Option<Pin<Box<Sleep>>>,
 }
 
 impl<S> StallGuard<S> {
-    pub(crate) const fn new(stream: S, timeout: Duration) -> Self {
-        Self { stream, timeout, waiting: None }
+    pub(crate) const fn new(stream: S, timeout: Duration, counters: Arc<Counters>) -> Self {
+        Self { stream, timeout, counters, waiting: None }
     }
 
     fn watch<T>(&mut self, cx: &mut Context<'_>, write: Poll<io::Result<T>>) -> Poll<io::Result<T>> {
@@ -31,7 +34,7 @@ impl<S> StallGuard<S> {
         let deadline = Instant::now() + self.timeout;
         let waiting = self.waiting.get_or_insert_with(|| Box::pin(tokio::time::sleep_until(deadline)));
         ready!(waiting.as_mut().poll(cx));
-        metrics::counter!("waymark_http_cut_off_total", "reason" => "stalled").increment(1);
+        self.counters.count(Refusal::Stalled);
         Poll::Ready(Err(io::Error::new(io::ErrorKind::TimedOut, "the peer stopped reading")))
     }
 }
@@ -82,16 +85,18 @@ mod tests {
     #[tokio::test(start_paused = true)]
     async fn a_peer_that_never_reads_is_given_up() {
         let (ours, _theirs) = tokio::io::duplex(16);
-        let mut guarded = StallGuard::new(ours, Duration::from_secs(8));
+        let counters = Arc::new(Counters::default());
+        let mut guarded = StallGuard::new(ours, Duration::from_secs(8), Arc::clone(&counters));
         let error = guarded.write_all(&[0; 64]).await.unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::TimedOut);
+        assert!(counters.by_reason().contains(&("stalled", 1)));
     }
 
     #[tokio::test(start_paused = true)]
     async fn progress_starts_the_time_anew() {
         use tokio::io::AsyncReadExt;
         let (ours, mut theirs) = tokio::io::duplex(16);
-        let mut guarded = StallGuard::new(ours, Duration::from_secs(8));
+        let mut guarded = StallGuard::new(ours, Duration::from_secs(8), Arc::default());
         let reader = async {
             for _ in 0..4 {
                 tokio::time::sleep(Duration::from_secs(5)).await;

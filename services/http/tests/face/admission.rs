@@ -40,6 +40,8 @@ async fn foreign_hosts_and_origins_are_refused_and_change_nothing() {
     let foreign =
         server.ask("POST", "/change", "Origin: https://evil.example\r\nContent-Length: 0\r\n", "").await;
     assert_eq!(status(&foreign), 403);
+    let refused = server.get("/refused").await;
+    assert!(refused.contains(r#"("host", 0), ("origin", 1)"#), "{refused}");
     let mut stream = server.connect().await;
     tokio::io::AsyncWriteExt::write_all(&mut stream, b"GET /livez HTTP/1.1\r\nHost: evil.example\r\n\r\n")
         .await

@@ -1,9 +1,10 @@
 //! A running web face and a client that speaks plain bytes.
 
-use axum::Router;
 use axum::routing::{get, post};
+use axum::{Extension, Router};
 use http_face::{
-    Access, Cameras, Check, Events, Picture, PictureRequest, Policy, Render, ServeReport, health, page, serve,
+    Access, Cameras, Check, Counters, Events, Picture, PictureRequest, Policy, Render, ServeReport, health,
+    page, serve,
 };
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -76,9 +77,12 @@ fn router(cameras: &Arc<Cameras<Vec<u8>>>, events: &Arc<Events>, changes: &Arc<A
         .route("/readyz", get(|| async { health(&[Check::fail("recorder", "the disk is full")]) }))
         .route("/api/v1/events", get(move |headers| async move { events.respond(&headers) }))
         .route(
-            "/access",
-            get(|axum::Extension(access): axum::Extension<Access>| async move { access.name() }),
+            "/refused",
+            get(|Extension(counters): Extension<Arc<Counters>>| async move {
+                format!("{:?}", counters.by_reason())
+            }),
         )
+        .route("/access", get(|Extension(access): Extension<Access>| async move { access.name() }))
         .route(
             "/change",
             post(move |body: String| async move {
