@@ -26,6 +26,7 @@ pub mod mask;
 pub mod measure;
 pub mod outcome;
 pub mod outline;
+pub mod overlay;
 pub mod predict;
 pub mod probe;
 #[doc(hidden)]
