@@ -6,6 +6,7 @@
 //! that lies on it, refined by total least squares; its pixels take their votes back, and so on.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 
 use crate::outline::Outline;
 
@@ -13,7 +14,7 @@ use crate::outline::Outline;
 const ANGLES: usize = 360;
 /// A border pixel votes this many bins to either side of its local normal: chords of eight pixels are good to ±7°, more
 /// where a side begins to bend.
-const ANGLE_REACH: i32 = 24;
+const ANGLE_REACH: usize = 18;
 /// Half the chord that gives the local direction, in border pixels.
 const CHORD: isize = 4;
 /// Outlines shorter than this have no local direction: their pixels vote for every angle.
@@ -61,21 +62,45 @@ impl OutlineSegment {
     }
 }
 
+/// Marks an angle whose votes have changed since its fullest bin was looked for.
+const STALE: i16 = -1;
+
+/// Neighbouring angle bins, counted around the half circle.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    first: usize,
+    bins: usize,
+}
+
+impl Reach {
+    /// The bins as ranges: one, or two where they pass the end of 0..π.
+    fn ranges(self) -> [Range<usize>; 2] {
+        let end = self.first + self.bins;
+        [self.first..end.min(ANGLES), 0..end.saturating_sub(ANGLES)]
+    }
+
+    fn contains(self, angle: usize) -> bool {
+        (angle + ANGLES - self.first) % ANGLES < self.bins
+    }
+}
+
 /// The transform with its memory.
 #[derive(Clone, Debug)]
 pub struct Hough {
     /// cos θ and sin θ of the middle of each bin, times 2^[`FRACTION_BITS`].
     table: Vec<(i32, i32)>,
-    /// Votes, θ-major.
-    votes: Vec<u16>,
+    /// Votes, θ-major. No bin gets more than the pixels of a straight line.
+    votes: Vec<i16>,
+    /// For each angle the votes of its fullest bin, or [`STALE`].
+    fullest: Vec<i16>,
     /// Bins of ρ.
     distances: usize,
     /// Added to ⌊ρ⌋ to give its bin.
     distance_offset: i32,
     /// Subtracted from every pixel, so that ρ stays small.
     origin: (i32, i32),
-    /// For each border pixel the angle bins that it votes in: the first one and how many.
-    reach: Vec<(i32, i32)>,
+    /// For each border pixel the angle bins that it votes in.
+    reach: Vec<Reach>,
     taken: Vec<bool>,
     segments: Vec<OutlineSegment>,
 }
@@ -90,6 +115,7 @@ impl Default for Hough {
         Self {
             table: (0..ANGLES).map(entry).collect(),
             votes: Vec::new(),
+            fullest: vec![STALE; ANGLES],
             distances: 0,
             distance_offset: 0,
             origin: (0, 0),
@@ -108,7 +134,7 @@ impl Hough {
         if (outline.pixels().len() as f64) >= shortest {
             self.prepare(outline);
             for at in 0..outline.pixels().len() {
-                self.vote(outline, at, u16::wrapping_add);
+                self.vote(outline, at, 1);
             }
             self.take_segments(outline, shortest);
             self.segments.sort_unstable_by_key(|segment| segment.first);
@@ -130,27 +156,38 @@ impl Hough {
         self.distances = 2 * self.distance_offset as usize + 1;
         self.votes.clear();
         self.votes.resize(ANGLES * self.distances, 0);
+        self.fullest.fill(0);
         self.taken.clear();
         self.taken.resize(pixels.len(), false);
         self.reach.clear();
         self.reach.extend((0..pixels.len()).map(|at| reach_of(outline, at)));
     }
 
-    /// Adds or takes back the votes of one border pixel.
-    fn vote(&mut self, outline: &Outline, at: usize, count: impl Fn(u16, u16) -> u16) {
+    /// Adds (1) or takes back (-1) the votes of one border pixel.
+    fn vote(&mut self, outline: &Outline, at: usize, count: i16) {
         let (x, y) = self.centred(outline.pixels()[at]);
-        let (first, bins) = self.reach[at];
-        for angle in first..first + bins {
-            let angle = angle.rem_euclid(ANGLES as i32) as usize;
-            let bin = angle * self.distances + self.distance_bin(x, y, angle);
-            self.votes[bin] = count(self.votes[bin], 1);
+        for angles in self.reach[at].ranges() {
+            self.fullest[angles.clone()].fill(STALE);
+            let rows = self.votes[angles.start * self.distances..].chunks_exact_mut(self.distances);
+            for (&(cos, sin), row) in self.table[angles].iter().zip(rows) {
+                // The shift takes the floor.
+                let distance = ((x * cos + y * sin) >> FRACTION_BITS) + self.distance_offset;
+                row[distance as usize] += count;
+            }
         }
     }
 
-    /// The bin of ρ = x cos θ + y sin θ; the shift takes the floor.
-    fn distance_bin(&self, x: i32, y: i32, angle: usize) -> usize {
-        let (cos, sin) = self.table[angle];
-        (((x * cos + y * sin) >> FRACTION_BITS) + self.distance_offset) as usize
+    /// The first of the fullest bins, and its votes.
+    fn fullest_bin(&mut self) -> (usize, i16) {
+        let rows = self.votes.chunks_exact(self.distances);
+        for (fullest, row) in self.fullest.iter_mut().zip(rows).filter(|(fullest, _)| **fullest == STALE) {
+            *fullest = row.iter().copied().fold(0, i16::max);
+        }
+        let most = self.fullest.iter().copied().fold(0, i16::max);
+        let angle = self.fullest.iter().position(|&votes| votes == most).unwrap_or(0);
+        let row = &self.votes[angle * self.distances..][..self.distances];
+        let distance = row.iter().position(|&votes| votes == most).unwrap_or(0);
+        (angle * self.distances + distance, most)
     }
 
     fn centred(&self, (x, y): (i32, i32)) -> (i32, i32) {
@@ -159,20 +196,23 @@ impl Hough {
 
     /// Takes the fullest bins' segments until none is long enough.
     fn take_segments(&mut self, outline: &Outline, shortest: f64) {
+        let mut left = outline.pixels().len();
         for _ in 0..MOST_SEGMENTS {
-            let Some((bin, votes)) = fullest(&self.votes) else { return };
+            let (bin, votes) = self.fullest_bin();
             // A side of that many pixels leaves at least half of them in the fullest of the bins it spreads over.
-            if f64::from(votes) < shortest / 2.0 {
+            if (left as f64) < shortest || f64::from(votes) < shortest / 2.0 {
                 return;
             }
-            let (first, span, segment) = self.refined(outline, bin, u32::from(votes));
+            let (first, span, segment) = self.refined(outline, bin, votes as u32);
             for at in (first..first + span).map(|at| at % outline.pixels().len()) {
                 if !std::mem::replace(&mut self.taken[at], true) {
-                    self.vote(outline, at, u16::wrapping_sub);
+                    self.vote(outline, at, -1);
+                    left -= 1;
                 }
             }
             if span == 0 {
                 self.votes[bin] = 0;
+                self.fullest[bin / self.distances] = STALE;
             } else if segment.length() >= shortest {
                 self.segments.push(segment);
             }
@@ -207,7 +247,7 @@ impl Hough {
         let on_line = |at: usize| {
             let (x, y) = self.centred(pixels[at]);
             !self.taken[at]
-                && reaches(self.reach[at], angle)
+                && self.reach[at].contains(angle)
                 && (f64::from(x) * cos + f64::from(y) * sin - rho).abs() <= ON_LINE
         };
         let count = pixels.len();
@@ -236,25 +276,16 @@ fn theta_of(angle: usize) -> f64 {
     (angle as f64 + 0.5) * PI / ANGLES as f64
 }
 
-/// The angle bins that border pixel `at` votes in: the first one, perhaps negative, and how many.
-fn reach_of(outline: &Outline, at: usize) -> (i32, i32) {
+/// The angle bins that border pixel `at` votes in.
+fn reach_of(outline: &Outline, at: usize) -> Reach {
     if outline.pixels().len() < SHORTEST_WITH_DIRECTION {
-        return (0, ANGLES as i32);
+        return Reach { first: 0, bins: ANGLES };
     }
     let (ax, ay) = outline.pixel_after(at, -CHORD);
     let (bx, by) = outline.pixel_after(at, CHORD);
     let normal = f64::from(bx - ax).atan2(f64::from(ay - by)).rem_euclid(PI);
-    ((normal * ANGLES as f64 / PI) as i32 - ANGLE_REACH, 2 * ANGLE_REACH + 1)
-}
-
-fn reaches((first, bins): (i32, i32), angle: usize) -> bool {
-    (angle as i32 - first).rem_euclid(ANGLES as i32) < bins
-}
-
-/// The first of the fullest bins, and its votes.
-fn fullest(votes: &[u16]) -> Option<(usize, u16)> {
-    let most = votes.iter().copied().max()?;
-    votes.iter().position(|&count| count == most).map(|bin| (bin, most))
+    let middle = (normal * ANGLES as f64 / PI) as usize;
+    Reach { first: (middle + ANGLES - ANGLE_REACH) % ANGLES, bins: 2 * ANGLE_REACH + 1 }
 }
 
 /// The straight line that fits a piece of border best (total least squares), between the feet of its end pixels.

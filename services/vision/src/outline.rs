@@ -62,7 +62,11 @@ impl Outline {
     /// The pixel `ahead` places further along the border than the one with number `at`.
     #[must_use]
     pub fn pixel_after(&self, at: usize, ahead: isize) -> (i32, i32) {
-        self.pixels[(at as isize + ahead).rem_euclid(self.pixels.len() as isize) as usize]
+        let place = at as isize + ahead;
+        let count = self.pixels.len() as isize;
+        // Almost always in range, and a division costs as much as the rest of the loop it stands in.
+        let place = if (0..count).contains(&place) { place } else { place.rem_euclid(count) };
+        self.pixels[place as usize]
     }
 
     /// The sides of the closed line through the border pixels.

@@ -1,5 +1,6 @@
 //! How much a sighting deserves belief, and which of several comes first.
 
+use crate::geometry::PointPx;
 use crate::landmark::WindowPx;
 use crate::outcome::{Prediction, Sighting};
 
@@ -21,15 +22,57 @@ pub fn score(sighting: &Sighting, window: WindowPx, prediction: Option<&Predicti
     size * shape * prediction.map_or(1.0, |prediction| agreement(sighting, prediction))
 }
 
-/// Sorts by score, best first, drops specks, and notes how distinct each one is.
+/// Sorts by score, best first, drops specks and further pieces of objects already there, and notes how distinct each
+/// sighting is.
 pub fn rank(sightings: &mut Vec<Sighting>) {
     sightings.sort_by(|a, b| b.score.total_cmp(&a.score));
+    drop_pieces(sightings);
     let best = sightings.first().map_or(0.0, |sighting| sighting.score);
     let runner_up = sightings.get(1).map_or(0.0, |sighting| sighting.score);
     sightings.retain(|sighting| sighting.score >= SMALLEST_PART_OF_BEST * best);
     for (place, sighting) in sightings.iter_mut().enumerate() {
         let rival = if place == 0 { runner_up } else { best };
         sighting.distinctness = (1.0 - rival / sighting.score).clamp(0.0, 1.0);
+    }
+}
+
+/// Keeps of sightings that overlap the best one only: two instances do not cover each other, but a shaded or lettered
+/// object may well fall into several components.
+fn drop_pieces(sightings: &mut Vec<Sighting>) {
+    let mut kept = 0;
+    for at in 0..sightings.len() {
+        let bounds = Bounds::of(&sightings[at].outline);
+        if !sightings[..kept].iter().any(|better| Bounds::of(&better.outline).overlap(&bounds)) {
+            sightings.swap(kept, at);
+            kept += 1;
+        }
+    }
+    sightings.truncate(kept);
+}
+
+/// The bounding box of an outline.
+struct Bounds {
+    low: PointPx,
+    high: PointPx,
+}
+
+impl Bounds {
+    fn of(outline: &[PointPx]) -> Self {
+        let nothing = Self {
+            low: PointPx::new(f32::INFINITY, f32::INFINITY),
+            high: PointPx::new(f32::NEG_INFINITY, f32::NEG_INFINITY),
+        };
+        outline.iter().fold(nothing, |bounds, point| Self {
+            low: PointPx::new(bounds.low.x.min(point.x), bounds.low.y.min(point.y)),
+            high: PointPx::new(bounds.high.x.max(point.x), bounds.high.y.max(point.y)),
+        })
+    }
+
+    fn overlap(&self, other: &Self) -> bool {
+        self.low.x < other.high.x
+            && other.low.x < self.high.x
+            && self.low.y < other.high.y
+            && other.low.y < self.high.y
     }
 }
 
@@ -47,4 +90,52 @@ fn agreement(sighting: &Sighting, prediction: &Prediction) -> f32 {
     let ratio = sighting.area_px2 / prediction.area_px2;
     let size = if ratio.is_normal() { ratio.min(1.0 / ratio).max(0.0).sqrt() } else { 1.0 };
     size / (1.0 + squared_distance / 9.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seen(x: f32, side: f32) -> Sighting {
+        let (low, high) = (x - side / 2.0, x + side / 2.0);
+        let corners = [(low, low), (high, low), (high, high), (low, high)];
+        let mut sighting = Sighting {
+            centroid: PointPx::new(x, x),
+            area_px2: side * side,
+            outline: corners.map(|(x, y)| PointPx::new(x, y)).to_vec(),
+            ..Sighting::default()
+        };
+        sighting.score = score(&sighting, WindowPx::square(12), None);
+        sighting
+    }
+
+    #[test]
+    fn the_larger_comes_first_and_pieces_and_specks_go() {
+        let mut sightings = vec![seen(15.0, 8.0), seen(20.0, 30.0), seen(90.0, 25.0), seen(200.0, 1.0)];
+        rank(&mut sightings);
+        let places: Vec<f32> = sightings.iter().map(|sighting| sighting.centroid.x).collect();
+        assert_eq!(places, [20.0, 90.0]);
+        assert!(sightings[0].distinctness > 0.0 && sightings[1].distinctness == 0.0);
+    }
+
+    #[test]
+    fn one_alone_is_wholly_distinct() {
+        let mut sightings = vec![seen(20.0, 30.0)];
+        rank(&mut sightings);
+        assert_eq!(sightings[0].distinctness, 1.0);
+    }
+
+    #[test]
+    fn a_prediction_outweighs_size() {
+        let prediction = Prediction {
+            centroid: PointPx::new(90.0, 90.0),
+            area_px2: 400.0,
+            covariance_px2: [4.0, 0.0, 4.0],
+        };
+        let window = WindowPx::square(12);
+        let (near, far) = (seen(91.0, 20.0), seen(20.0, 60.0));
+        assert!(score(&near, window, Some(&prediction)) > score(&far, window, Some(&prediction)));
+        let vague = Prediction { covariance_px2: [0.0; 3], ..prediction };
+        assert!(score(&near, window, Some(&vague)) > score(&far, window, Some(&vague)));
+    }
 }
