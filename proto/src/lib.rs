@@ -11,6 +11,7 @@ mod arbitrary;
 pub mod attachment;
 pub mod convert;
 pub mod digest;
+pub mod documents;
 pub mod gaps;
 pub mod images;
 pub mod json;

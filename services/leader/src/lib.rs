@@ -1,1 +1,24 @@
 //! The landmark set, published to Zenoh with a manifest, and its web face.
+//!
+//! [`book`] decides what the set is, [`memory`] keeps it from one start to the next, [`publication`] turns it into
+//! messages, [`answers`] gives them to whoever asks and [`announcements`] to whoever listens; [`run`] puts them
+//! together. [`client`] is the other side: what the command line says to a running leader.
+
+mod announcements;
+mod answers;
+pub mod book;
+pub mod client;
+pub mod config;
+pub mod error;
+pub mod landmark_files;
+mod memory;
+mod publication;
+mod run;
+mod status;
+mod web;
+
+pub use book::{Change, Edit, Others, RefusedEdit};
+pub use config::LeaderConfig;
+pub use error::LeaderError;
+pub use run::{EditError, Leader, LeaderHandle, LeaderReport, run};
+pub use status::EditCounts;

@@ -7,6 +7,7 @@ pub mod clock;
 pub mod config;
 pub mod identity;
 pub mod presence;
+pub mod reply;
 pub mod session;
 pub mod shutdown;
 pub mod telemetry;

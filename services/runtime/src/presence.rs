@@ -16,12 +16,14 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use zenoh::Session;
 use zenoh::bytes::Encoding;
+use zenoh::key_expr::KeyExpr;
 use zenoh::liveliness::LivelinessToken;
 use zenoh::qos::CongestionControl;
 use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable};
 
 use crate::clock::{ClockOffset, Exchange, best_offset};
 use crate::identity::{Identity, unix_time_ns};
+use crate::reply::{Answer, reply};
 
 /// How long others have to answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(1);
@@ -171,25 +173,21 @@ async fn declare_answers(
     own: Introduction,
     established: Arc<AtomicBool>,
 ) -> zenoh::Result<Queryable<()>> {
-    let key = place.own_key.clone();
+    let key = KeyExpr::new(place.own_key.clone())?;
     session
-        .declare_queryable(&place.own_key)
+        .declare_queryable(key.clone())
         .callback(move |query| {
             let received_at_ns = unix_time_ns();
             let established = established.load(Ordering::Acquire);
-            answer(&query, &key, Introduction { established, received_at_ns, ..own.clone() });
+            introduce(&query, key.clone(), Introduction { established, received_at_ns, ..own.clone() });
         })
         .await
 }
 
-fn answer(query: &Query, key: &str, mut own: Introduction) {
-    use zenoh::Wait as _;
+fn introduce(query: &Query, key: KeyExpr<'static>, mut own: Introduction) {
     own.answered_at_ns = unix_time_ns();
-    let payload = serde_json::json!(own).to_string();
-    let reply = query.reply(key, payload).encoding(Encoding::APPLICATION_JSON).express(true);
-    if let Err(error) = reply.wait() {
-        tracing::debug!(%error, "an introduction could not be sent");
-    }
+    let payload = serde_json::json!(own).to_string().into();
+    reply(query, Answer { key, payload, encoding: Encoding::APPLICATION_JSON, attachment: None });
 }
 
 async fn ask(session: &Session, key_expression: &str) -> zenoh::Result<Vec<(Introduction, Exchange)>> {

@@ -1,5 +1,7 @@
 //! Sessions over loopback TCP: routing, reconnecting, presence.
 
+#![allow(clippy::unwrap_used)] // a test's helpers may fail the test
+
 use std::net::TcpListener;
 use std::time::Duration;
 

@@ -1,0 +1,115 @@
+//! The leader's routes (contract section 8) on the shared web face.
+
+use std::sync::Arc;
+
+use axum::extract::{Path, State};
+use axum::http::HeaderMap;
+use axum::response::Response;
+use axum::routing::get;
+use axum::{Json, Router};
+use http_face::{Check, Problem, conditional, entity_tag, health, metrics_text, page};
+use metrics::{counter, gauge};
+use metrics_exporter_prometheus::PrometheusBuilder;
+use runtime::Identity;
+use runtime::session::is_router_connected;
+use tokio::sync::watch;
+use waymark_proto::documents::{landmark_document, set_document};
+use zenoh::Session;
+
+use crate::publication::Publication;
+use crate::status::{EditCounts, LeaderStatus, RouterStatus, SetStatus};
+
+/// Everything that the routes look at.
+pub(crate) struct Face {
+    pub(crate) vehicle: String,
+    pub(crate) identity: Identity,
+    pub(crate) session: Session,
+    pub(crate) publications: watch::Receiver<Publication>,
+    pub(crate) edits: watch::Receiver<EditCounts>,
+}
+
+type Shared = State<Arc<Face>>;
+
+/// All routes of a leader.
+pub(crate) fn routes(face: Arc<Face>) -> Router {
+    Router::new()
+        .route("/livez", get(|| async { health(&[Check::pass("process", "answers")]) }))
+        .route("/readyz", get(ready))
+        .route("/metrics", get(metrics))
+        .route("/api/v1/status", get(status))
+        .route("/api/v1/landmarks", get(landmarks))
+        .route("/api/v1/landmarks/{id}", get(landmark))
+        .with_state(face)
+        .merge(page())
+}
+
+impl Face {
+    pub(crate) async fn status(&self) -> LeaderStatus {
+        let connected = is_router_connected(&self.session).await;
+        let set = Arc::clone(&self.publications.borrow().set);
+        LeaderStatus {
+            vehicle: self.vehicle.clone(),
+            role: "leader",
+            version: env!("CARGO_PKG_VERSION"),
+            instance: self.identity.instance.clone(),
+            uptime_s: self.identity.uptime().as_secs_f64(),
+            router: RouterStatus { connected },
+            landmarks: set.landmarks.len(),
+            set: SetStatus { epoch: set.version.epoch, version: set.version.version },
+            edits: *self.edits.borrow(),
+            cameras: [],
+        }
+    }
+}
+
+async fn ready(State(face): Shared) -> Response {
+    let router = match is_router_connected(&face.session).await {
+        true => Check::pass("router", "connected"),
+        false => Check::fail(
+            "router",
+            "no router is connected; is `waymark router` running where zenoh.connect says?",
+        ),
+    };
+    health(&[router])
+}
+
+async fn status(State(face): Shared) -> Json<LeaderStatus> {
+    Json(face.status().await)
+}
+
+/// A recorder of its own for each scrape: two services in one process never mix their figures.
+async fn metrics(State(face): Shared) -> Response {
+    let status = face.status().await;
+    let recorder = PrometheusBuilder::new().build_recorder();
+    metrics::with_local_recorder(&recorder, || {
+        gauge!("waymark_uptime_seconds").set(status.uptime_s);
+        gauge!("waymark_landmarks").set(status.landmarks as f64);
+        gauge!("waymark_landmark_set_epoch").set(status.set.epoch as f64);
+        gauge!("waymark_landmark_set_version").set(status.set.version as f64);
+        gauge!("waymark_router_connected").set(f64::from(u8::from(status.router.connected)));
+        counter!("waymark_landmark_edits_total", "result" => "made").absolute(status.edits.made);
+        counter!("waymark_landmark_edits_total", "result" => "refused").absolute(status.edits.refused);
+    });
+    metrics_text(recorder.handle().render())
+}
+
+async fn landmarks(State(face): Shared, headers: HeaderMap) -> Response {
+    let set = Arc::clone(&face.publications.borrow().set);
+    document(&headers, &set_document(&set))
+}
+
+async fn landmark(
+    State(face): Shared,
+    Path(id): Path<String>,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
+    let set = Arc::clone(&face.publications.borrow().set);
+    let landmark = set.landmarks.iter().find(|landmark| landmark.id == id);
+    let landmark = landmark.ok_or_else(|| Problem::not_found(&format!("landmark {id:?}")))?;
+    Ok(document(&headers, &landmark_document(landmark)))
+}
+
+fn document(request: &HeaderMap, value: &serde_json::Value) -> Response {
+    let content = value.to_string().into_bytes();
+    conditional(request, &entity_tag(&content), "application/json", content.into())
+}
