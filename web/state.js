@@ -33,8 +33,10 @@ export const known = {
 /** @param {any} camera */
 export function learnCamera(camera) {
   const former = known.cameras.get(camera.id);
-  // An answer that was under way may be older than an event that overtook it.
-  if (former && former.sequence > camera.sequence && former.sequence - camera.sequence < 100) return;
+  const sinceMs = performance.now() - (known.cameraAt.get(camera.id) ?? -Infinity);
+  // An answer that was under way may be older than an event that overtook it. Not so after a pause: then the camera
+  // may have started anew and counts from the beginning.
+  if (former && sinceMs < 1000 && former.sequence > camera.sequence) return;
   known.cameras.set(camera.id, camera);
   known.cameraAt.set(camera.id, performance.now());
 }

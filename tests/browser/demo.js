@@ -11,7 +11,7 @@ import { fileURLToPath } from "node:url";
 
 const ROOT = resolve(fileURLToPath(import.meta.url), "../../..");
 const PLACES = [process.env.WAYMARK_BIN, join(ROOT, "target/release/waymark"), join(ROOT, "target/debug/waymark")];
-const START_MS = 30_000;
+const START_MS = 60_000;
 
 export async function freePort() {
   const server = createServer().listen(0, "127.0.0.1");

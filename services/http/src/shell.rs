@@ -28,8 +28,8 @@ use tokio_util::sync::CancellationToken;
 const MAX_DISCARDED_BYTES: usize = 16 << 20;
 
 /// Nothing but our own files, no inline code, no frames around us.
-const CONTENT_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; \
-     connect-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+const CONTENT_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; \
+     connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 /// Tells a client whether it may change things, so that the page can say so.
 const ACCESS: HeaderName = HeaderName::from_static("x-waymark-access");
