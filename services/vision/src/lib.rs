@@ -24,6 +24,7 @@ pub mod landmark;
 pub mod learn;
 pub mod mask;
 pub mod measure;
+pub mod nearest;
 pub mod outcome;
 pub mod outline;
 pub mod overlay;
