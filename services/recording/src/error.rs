@@ -15,18 +15,21 @@ pub enum RecordingError {
         /// The operating system's answer.
         source: io::Error,
     },
+    /// The disk refused, most often because it is full.
+    #[error("cannot write the recording: {0}")]
+    Write(io::Error),
     /// The MCAP library refused.
     #[error("cannot write MCAP: {0}")]
     Mcap(mcap::McapError),
     /// There is less room than the floor leaves.
     #[error(
-        "disk full: {free_bytes} bytes free, {floor_bytes} are kept free; delete recordings or lower the floor"
+        "disk full: {free_bytes} bytes free, {needed_bytes} needed; delete recordings or lower the floor"
     )]
     NoRoom {
         /// Bytes free on the recordings' file system.
         free_bytes: u64,
-        /// Bytes that recording leaves free.
-        floor_bytes: u64,
+        /// The floor that recording leaves free and, after a failure, some more to begin again.
+        needed_bytes: u64,
     },
     /// The vehicle id cannot stand in a file name.
     #[error("vehicle id {0:?} is not allowed: use [a-z0-9][a-z0-9_-]{{0,62}}")]
@@ -59,6 +62,10 @@ impl RecordingError {
 
 impl From<mcap::McapError> for RecordingError {
     fn from(error: mcap::McapError) -> Self {
-        RecordingError::Mcap(error)
+        match error {
+            // The library's own message for these leaves the cause out.
+            mcap::McapError::Io(source) => RecordingError::Write(source),
+            other => RecordingError::Mcap(other),
+        }
     }
 }

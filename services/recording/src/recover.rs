@@ -8,15 +8,17 @@ use std::{
 };
 
 use mcap::{
-    records::{MessageHeader, Record},
+    records::{MessageHeader, Metadata, Record, op},
     write::NoSeek,
 };
 
 use crate::{
-    RecordingError, WriterOptions,
+    Compression, RecordingError, WriterOptions, chunk,
     file_name::{ACTIVE, FINISHED},
+    scan::{self, End, Scanner},
     storage::rename_new,
     walk::{CutChunk, Fault, FaultKind, RecordedMessage, Step, Walk},
+    writer::ACCOUNTS_RECORD,
 };
 
 /// Extension of a file that recovery is writing.
@@ -47,85 +49,146 @@ impl RecoverReport {
     pub fn lost_data(&self) -> bool {
         self.cut_bytes > 0 || self.faults.iter().any(|fault| fault.kind != FaultKind::Cut)
     }
+
+    fn to_metadata(&self) -> Metadata {
+        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let faults: Vec<String> = self.faults.iter().map(Fault::to_string).collect();
+        let metadata = BTreeMap::from([
+            ("input".to_owned(), name(&self.input)),
+            ("messages".to_owned(), self.messages.to_string()),
+            ("chunks".to_owned(), self.chunks.to_string()),
+            ("cut_bytes".to_owned(), self.cut_bytes.to_string()),
+            ("faults".to_owned(), faults.join("\n")),
+        ]);
+        Metadata { name: RECOVERY_RECORD.to_owned(), metadata }
+    }
 }
 
+/// Name of the metadata record that a recovered file carries.
+pub(crate) const RECOVERY_RECORD: &str = "waymark.recovery";
+
 /// Writes everything readable of `input` to the new file `output`, which must not exist. Ids, order, times,
-/// metadata and attachments stay; whole messages of a cut last chunk are kept on trust.
+/// metadata, attachments and compression stay; whole messages of a cut last chunk are kept on trust. Messages
+/// whose channel was declared in a damaged chunk are kept when the summary repeats the declaration.
 pub fn recover(
     input: &Path,
     output: &Path,
     options: &WriterOptions,
 ) -> Result<RecoverReport, RecordingError> {
+    let outline = Outline::read(input)?;
     let mut walk = Walk::open(input, CutChunk::Salvage)?;
+    walk.predeclare(&outline.summary);
     let file = File::create_new(output).map_err(RecordingError::io("cannot create", output))?;
-    let outcome = copy(&mut walk, &file, options).and_then(|mut report| {
-        file.sync_all().map_err(RecordingError::io("cannot sync", output))?;
-        let input_bytes =
-            fs::metadata(input).map_err(RecordingError::io("cannot read the size of", input))?.len();
-        let cut = report.faults.iter().find(|fault| fault.kind == FaultKind::Cut);
-        report.cut_bytes = cut.map_or(0, |fault| input_bytes.saturating_sub(fault.offset));
-        Ok(RecoverReport { input: input.to_owned(), output: output.to_owned(), ..report })
-    });
-    if outcome.is_err() {
-        // Half a recovery is worth nothing, the input is still there.
-        let _ = fs::remove_file(output);
-    }
-    outcome
-}
-
-type Output<'a> = mcap::Writer<NoSeek<BufWriter<&'a File>>>;
-
-fn copy(
-    walk: &mut Walk<impl std::io::Read>,
-    file: &File,
-    options: &WriterOptions,
-) -> Result<RecoverReport, RecordingError> {
-    let mut copying = Copying {
-        mcap: mcap::WriteOptions::new()
-            .profile("")
-            .library(&options.library)
-            .compression(options.compression.as_mcap())
-            .compression_threads(0)
-            .chunk_size(Some(options.chunk_bytes as u64))
-            .disable_seeking(true)
-            .create(NoSeek::new(BufWriter::new(file)))?,
-        declared: BTreeSet::new(),
-        after_data: false,
-    };
     let mut report = RecoverReport {
-        input: PathBuf::new(),
-        output: PathBuf::new(),
+        input: input.to_owned(),
+        output: output.to_owned(),
         messages: 0,
         chunks: 0,
         faults: Vec::new(),
-        cut_bytes: 0,
+        cut_bytes: outline.cut_bytes,
     };
-    while let Some((offset, step)) = walk.next_step()? {
-        match step {
-            Step::Chunk(_) => report.chunks += 1,
-            Step::Message(message) => {
-                copying.message(&message)?;
-                report.messages += 1;
-            }
-            Step::Record(record) => copying.record(&record)?,
-            Step::Fault(kind) => {
-                report.chunks -= u64::from(matches!(kind, FaultKind::Chunk(_))).min(report.chunks);
-                report.faults.push(Fault { offset, kind });
-            }
-        }
+    let outcome = Copying::begin(&file, options, &outline)
+        .and_then(|copying| copying.copy(&mut walk, &mut report))
+        .and_then(|()| file.sync_all().map_err(RecordingError::io("cannot sync", output)));
+    if let Err(error) = outcome {
+        // Half a recovery is worth nothing, the input is still there.
+        let _ = fs::remove_file(output);
+        return Err(error);
     }
-    copying.mcap.finish()?;
     Ok(report)
 }
+
+/// What must be known of a file before it is copied.
+struct Outline {
+    /// Of the first chunk; `None` when the file has no chunk.
+    compression: Option<String>,
+    /// The summary section's records.
+    summary: Vec<Record<'static>>,
+    /// Bytes behind the last whole record, if the file is cut.
+    cut_bytes: u64,
+}
+
+impl Outline {
+    fn read(path: &Path) -> Result<Self, RecordingError> {
+        let mut scanner = Scanner::open(path)?;
+        let mut outline = Self { compression: None, summary: Vec::new(), cut_bytes: 0 };
+        let mut after_data = false;
+        while let Some(record) = scanner.next_record().map_err(RecordingError::io("cannot read", path))? {
+            if record.opcode == op::CHUNK && outline.compression.is_none() {
+                outline.compression = chunk::split(record.body).ok().map(|(header, _)| header.compression);
+            } else if after_data && let Ok(parsed) = scan::parse(record.opcode, &record.body) {
+                outline.summary.push(parsed.into_owned());
+            } else {
+                after_data |= record.opcode == op::DATA_END;
+            }
+        }
+        if let Some(End::Cut { offset, .. }) = scanner.end() {
+            outline.cut_bytes = scanner.length().saturating_sub(*offset);
+        }
+        Ok(outline)
+    }
+
+    fn compression(&self, otherwise: Compression) -> Compression {
+        match self.compression.as_deref() {
+            Some("zstd") => Compression::Zstd,
+            Some("lz4") => Compression::Lz4,
+            Some("") => Compression::None,
+            Some(_) | None => otherwise,
+        }
+    }
+}
+
+type Output<'a> = mcap::Writer<NoSeek<BufWriter<&'a File>>>;
 
 struct Copying<'a> {
     mcap: Output<'a>,
     declared: BTreeSet<u16>,
     /// Behind the data section everything repeats what came before, and the writer writes its own.
     after_data: bool,
+    /// The recorder's accounts, which are only true of the whole file.
+    accounts: Option<Metadata>,
 }
 
-impl Copying<'_> {
+impl<'a> Copying<'a> {
+    fn begin(file: &'a File, options: &WriterOptions, outline: &Outline) -> Result<Self, RecordingError> {
+        let mcap = mcap::WriteOptions::new()
+            .profile("")
+            .library(&options.library)
+            .compression(outline.compression(options.compression).as_mcap())
+            .compression_threads(0)
+            .chunk_size(Some(options.chunk_bytes as u64))
+            .disable_seeking(true)
+            .create(NoSeek::new(BufWriter::new(file)))?;
+        Ok(Self { mcap, declared: BTreeSet::new(), after_data: false, accounts: None })
+    }
+
+    fn copy(
+        mut self,
+        walk: &mut Walk<impl std::io::Read>,
+        report: &mut RecoverReport,
+    ) -> Result<(), RecordingError> {
+        while let Some((offset, step)) = walk.next_step()? {
+            match step {
+                Step::Chunk(_) => report.chunks += 1,
+                Step::Message(message) => {
+                    self.message(&message)?;
+                    report.messages += 1;
+                }
+                Step::Record(record) => self.record(record)?,
+                Step::Fault(kind) => {
+                    let chunk_lost = matches!(kind, FaultKind::Chunk(_));
+                    report.chunks = report.chunks.saturating_sub(u64::from(chunk_lost));
+                    report.faults.push(Fault { offset, kind });
+                }
+            }
+        }
+        match self.accounts.take() {
+            Some(accounts) if report.faults.is_empty() => self.mcap.write_metadata(&accounts)?,
+            _ => self.mcap.write_metadata(&report.to_metadata())?,
+        }
+        Ok(self.mcap.finish().map(drop)?)
+    }
+
     fn message(&mut self, message: &RecordedMessage) -> Result<(), RecordingError> {
         let channel = &message.channel;
         if self.declared.insert(channel.id) {
@@ -145,17 +208,18 @@ impl Copying<'_> {
         Ok(self.mcap.write_to_known_channel(&header, &message.data)?)
     }
 
-    fn record(&mut self, record: &Record<'_>) -> Result<(), RecordingError> {
+    fn record(&mut self, record: Record<'_>) -> Result<(), RecordingError> {
         match record {
             _ if self.after_data => {}
             Record::DataEnd(_) => self.after_data = true,
-            Record::Metadata(metadata) => self.mcap.write_metadata(metadata)?,
+            Record::Metadata(metadata) if metadata.name == ACCOUNTS_RECORD => self.accounts = Some(metadata),
+            Record::Metadata(metadata) => self.mcap.write_metadata(&metadata)?,
             Record::Attachment { header, data, .. } => self.mcap.attach(&mcap::Attachment {
                 log_time: header.log_time,
                 create_time: header.create_time,
-                name: header.name.clone(),
-                media_type: header.media_type.clone(),
-                data: data.as_ref().into(),
+                name: header.name,
+                media_type: header.media_type,
+                data,
             })?,
             _ => {}
         }

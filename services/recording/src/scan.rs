@@ -126,6 +126,11 @@ impl<R: Read> Scanner<R> {
         Ok(Some(record))
     }
 
+    /// Length of the source, bytes.
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
     /// How the file ended, once [`Scanner::next_record`] has returned `None`.
     pub fn end(&self) -> Option<&End> {
         self.end.as_ref()

@@ -192,6 +192,14 @@ impl<R: Read> Walk<R> {
         }
     }
 
+    /// Declares beforehand what the file declares in its summary, for files whose first declarations are lost.
+    pub fn predeclare(&mut self, summary: &[Record<'static>]) {
+        for record in summary {
+            // A summary that contradicts itself declares what it can.
+            let _ = self.declare(record);
+        }
+    }
+
     /// Channels declared so far.
     pub fn channels(&self) -> impl Iterator<Item = &Arc<RecordedChannel>> {
         self.channels.values()
@@ -245,7 +253,7 @@ impl<R: Read> Walk<R> {
         let step = match scan::parse(opcode, body) {
             // The data is a slice of the chunk, not a copy.
             Ok(Record::Message { header, data }) => self.message(&header, body.slice_ref(&data)),
-            Ok(record) => self.declare(record.into_owned()),
+            Ok(record) => self.declare(&record).map(|()| Step::Record(record.into_owned())),
             Err(error) => Err(FaultKind::Record { opcode, why: error.to_string() }),
         };
         self.ready.push_back((offset, step.unwrap_or_else(Step::Fault)));
@@ -265,13 +273,13 @@ impl<R: Read> Walk<R> {
         }))
     }
 
-    fn declare(&mut self, record: Record<'static>) -> Result<Step, FaultKind> {
-        match &record {
+    fn declare(&mut self, record: &Record<'_>) -> Result<(), FaultKind> {
+        match record {
             Record::Schema { header, data } => self.declare_schema(header, data),
             Record::Channel(channel) => self.declare_channel(channel)?,
             _ => {}
         }
-        Ok(Step::Record(record))
+        Ok(())
     }
 
     fn declare_schema(&mut self, header: &SchemaHeader, data: &[u8]) {

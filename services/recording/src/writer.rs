@@ -171,7 +171,7 @@ impl<F: RecordingFile> FileWriter<F> {
     /// Closes the open chunk and makes the file durable up to here.
     pub fn sync(&mut self) -> Result<(), RecordingError> {
         self.close_chunk()?;
-        self.sync_whole().map_err(|error| RecordingError::Mcap(error.into()))
+        self.sync_whole().map_err(RecordingError::Write)
     }
 
     /// Length of the file, bytes, the open chunk counted uncompressed.
@@ -193,7 +193,7 @@ impl<F: RecordingFile> FileWriter<F> {
         self.write_metadata(ACCOUNTS_RECORD, accounts.to_metadata())?;
         self.mcap.finish()?;
         self.whole_bytes = self.tail.appended_bytes.load(Ordering::Relaxed);
-        self.sync_whole().map_err(|error| RecordingError::Mcap(error.into()))
+        self.sync_whole().map_err(RecordingError::Write)
     }
 
     /// Gives up after an error: cuts the file back to its last whole chunk and says what is not in it.

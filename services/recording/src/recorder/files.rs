@@ -79,10 +79,12 @@ impl<S: Storage> Recorder<S> {
             self.delete_oldest(retention.max_total_bytes, margin_bytes)?;
         }
         let (free_bytes, floor_bytes) = self.free_and_floor()?;
-        if free_bytes < floor_bytes + margin_bytes {
-            return Err(RecordingError::NoRoom { free_bytes, floor_bytes });
+        let needed_bytes = floor_bytes + margin_bytes;
+        if free_bytes < needed_bytes {
+            Err(RecordingError::NoRoom { free_bytes, needed_bytes })
+        } else {
+            Ok(())
         }
-        Ok(())
     }
 
     fn delete_oldest(&mut self, max_total_bytes: u64, margin_bytes: u64) -> Result<(), RecordingError> {
