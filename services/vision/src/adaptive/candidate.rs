@@ -21,7 +21,7 @@ const PARTS_REACH: f32 = 0.3;
 /// Signs whose parts fill this much of their hull are filled.
 const FILLED_SOLIDITY: f32 = 0.7;
 /// Seeds larger than this show an outline, px.
-const DISC_SIZE_PX: u32 = 22;
+const DISC_SIZE_PX: u32 = 20;
 /// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
 /// apart on small signs.
 const PALEST: [f32; 3] = [0.3, 0.45, 0.62];
@@ -173,9 +173,11 @@ fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
     if !round || bounds.width.max(bounds.height) > DISC_SIZE_PX {
         return None;
     }
-    let (object, clear) = disc::find(search.frame, seed.rect, bounds, face)?;
-    let mut candidate = measured(search, object, &Form::ROUND, Edge::Plain)?;
-    candidate.score *= clear.sqrt();
+    let found = disc::find(search.frame, seed.rect, bounds, face)?;
+    let form = Form { lettering: found.lettering, ..Form::ROUND };
+    let edge = border(search, &found.mask);
+    let mut candidate = measured(search, found.mask, &form, edge)?;
+    candidate.score *= found.clear.sqrt();
     Some(candidate)
 }
 

@@ -8,6 +8,10 @@ use crate::landmark::{ColorStats, ShapeClass};
 const SPECK_AREA_PX2: f32 = 24.0;
 /// Part of a sign's own variance at which an object is as likely plain as lettered.
 const PLAIN_FACE: f32 = 0.12;
+/// Faces are judged by more evidence than plain objects; this brings both to one scale.
+const FACE_SCALE: f32 = 0.65;
+/// Lettering of smaller signs is a smear, px².
+const RESOLVED_AREA_PX2: f32 = 110.0;
 /// The largest window, samples of the doubled grid.
 const LARGEST_WINDOW_2X: i32 = 48;
 
@@ -17,16 +21,22 @@ pub(crate) struct Form {
     pub(crate) solidity: f32,
     /// Long over short axis of the ellipse of the same moments, at least 1.
     pub(crate) elongation: f32,
+    /// Evidence of lettering that its form gave, as a part of a clear face's.
+    pub(crate) lettering: f32,
 }
 
 impl Form {
     /// Of a disc.
-    pub(crate) const ROUND: Self = Self { solidity: 1.0, elongation: 1.0 };
+    pub(crate) const ROUND: Self = Self { solidity: 1.0, elongation: 1.0, lettering: 0.0 };
 
     pub(crate) fn of(object: &Patch) -> Self {
         let area = object.count() as f32;
         let hull_area = polygon_area_and_centroid(&object.hull()).map_or(area, |(hull_area, _)| hull_area);
-        Self { solidity: (area / hull_area.max(1.0)).min(1.0), elongation: elongation(object) }
+        Self {
+            solidity: (area / hull_area.max(1.0)).min(1.0),
+            elongation: elongation(object),
+            lettering: 0.0,
+        }
     }
 
     /// How well it suits a shape class whatever the details of its outline, 0..1.
@@ -122,9 +132,12 @@ pub(crate) fn score(
         let seen = face.compare(face_pixels(search, object).map(|(color, _)| color));
         let light = off((seen.color.gain / search.gain).max(1e-3).ln(), 0.4);
         let pale = face.pale_middle(face_pixels(search, object));
-        let evidence = seen.lettering.max(pale).max(0.0);
+        let (lettering, sigma) =
+            if area_px2 >= RESOLVED_AREA_PX2 { (seen.lettering, 1.0) } else { (0.0, 1.5) };
+        let evidence = lettering.max(pale).max(form.lettering).max(0.0);
         let lettered = (evidence * (1.0 + PLAIN_FACE) / (evidence + PLAIN_FACE)).min(1.0);
-        return surely * light * off(seen.color.excess, 1.0) * lettered;
+        let merit = surely * light * off(seen.color.excess, sigma) * lettered;
+        return merit.powf(FACE_SCALE);
     }
     let color = search.likeness.nearest(observed.mean);
     let light = off((color.gain / search.gain).max(1e-3).ln(), 0.25);

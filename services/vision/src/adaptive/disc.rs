@@ -11,6 +11,10 @@ use crate::geometry::RectPx;
 /// Radii tried, px.
 const RADII_PX: (f32, f32) = (3.0, 9.0);
 const RADIUS_STEP: f32 = 1.09;
+/// A plain object before something dark has a middle that is lighter than its edge by up to this.
+const EDGE_ALONE: f32 = 0.12;
+/// The middle of a disc reaches to this part of its radius.
+const MIDDLE_RADIUS: f32 = 0.5;
 /// Directions in which the surroundings are judged.
 const SECTORS: usize = 8;
 
@@ -29,11 +33,29 @@ struct Contrast {
     overall: f32,
     /// The same in the second weakest direction, as a part of the tint inside.
     weakest: f32,
+    /// How much lighter the middle is than the ring around it, as a part of what lettering is lighter than the sign.
+    light_middle: f32,
 }
 
-/// The most outstanding disc centred within `bounds` of the frame, as a mask with room around it, and how clearly it
-/// stands out on its weaker sides, 0..1.
-pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> Option<(Patch, f32)> {
+impl Contrast {
+    fn merit(&self, disc: Disc) -> f32 {
+        let on_all_sides = 0.5 + 0.5 * self.weakest.max(0.0);
+        let lettered = 0.4 + self.light_middle.clamp(-0.2, 0.6);
+        self.overall * on_all_sides * lettered * disc.radius.powf(0.6)
+    }
+}
+
+/// A disc that stands out.
+pub(crate) struct Found {
+    pub(crate) mask: Patch,
+    /// How clearly it stands out on its weaker sides, 0..1.
+    pub(crate) clear: f32,
+    /// How much lighter its middle is, as a part of what a clear face shows.
+    pub(crate) lettering: f32,
+}
+
+/// The most outstanding disc centred within `bounds` of the frame, as a mask of the pixels of `rect`.
+pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> Option<Found> {
     let tints = Tints::of(frame, rect, face);
     let (left, top) = ((bounds.x - rect.x) as f32, (bounds.y - rect.y) as f32);
     let mut best: Option<(f32, Disc, Contrast)> = None;
@@ -43,7 +65,7 @@ pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> 
             for u in 0..=2 * bounds.width {
                 let disc = Disc { x: left + 0.5 * u as f32, y: top + 0.5 * v as f32, radius };
                 let contrast = tints.contrast(disc);
-                let merit = contrast.overall * (0.5 + 0.5 * contrast.weakest.max(0.0)) * radius.powf(0.6);
+                let merit = contrast.merit(disc);
                 if best.as_ref().is_none_or(|(most, ..)| merit > *most) {
                     best = Some((merit, disc, contrast));
                 }
@@ -52,7 +74,11 @@ pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> 
         radius *= RADIUS_STEP;
     }
     let (_, disc, contrast) = best?;
-    (contrast.overall > 0.15).then(|| (disc.patch(rect), contrast.weakest.clamp(0.0, 1.0)))
+    (contrast.overall > 0.15).then(|| Found {
+        mask: disc.patch(rect),
+        clear: contrast.weakest.clamp(0.0, 1.0),
+        lettering: contrast.light_middle - EDGE_ALONE,
+    })
 }
 
 impl Disc {
@@ -67,30 +93,40 @@ impl Disc {
 struct Tints {
     width: i32,
     height: i32,
-    values: Vec<f32>,
+    /// Tint and brightness of each pixel.
+    values: Vec<(f32, f32)>,
+    /// How much lighter than the sign's colour lettering is, levels.
+    lighter: f32,
 }
 
 impl Tints {
     fn of(frame: &Frame, rect: RectPx, face: &Face) -> Self {
         let rows = rect.y..rect.y + rect.height;
-        let tint = |x: u32, y: u32| face.tint_of(frame.pixel(x, y).map(f32::from));
+        let tint = |x: u32, y: u32| {
+            let color = frame.pixel(x, y).map(f32::from);
+            (face.tint_of(color), (color[0] + color[1] + color[2]) / 3.0)
+        };
         let values = rows.flat_map(|y| (rect.x..rect.x + rect.width).map(move |x| tint(x, y))).collect();
-        Self { width: rect.width as i32, height: rect.height as i32, values }
+        Self { width: rect.width as i32, height: rect.height as i32, values, lighter: face.lighter() }
     }
 
     fn contrast(&self, disc: Disc) -> Contrast {
         let reach = 1.45 * disc.radius + 1.0;
         let (inner2, near2, far2) = (disc.radius.powi(2), (disc.radius + 0.7).powi(2), reach * reach);
         let (mut inside, mut inside_n) = (0.0_f32, 0.0_f32);
+        let (mut middle, mut ring) = ((0.0_f32, 0.0_f32), (0.0_f32, 0.0_f32));
+        let middle2 = inner2 * MIDDLE_RADIUS * MIDDLE_RADIUS;
         let mut around = [(0.0_f32, 0.0_f32); SECTORS];
         for y in ((disc.y - reach) as i32).max(0)..((disc.y + reach) as i32 + 1).min(self.height) {
             for x in ((disc.x - reach) as i32).max(0)..((disc.x + reach) as i32 + 1).min(self.width) {
                 let (dx, dy) = (x as f32 + 0.5 - disc.x, y as f32 + 0.5 - disc.y);
                 let distance2 = dx * dx + dy * dy;
-                let tint = self.values[(y * self.width + x) as usize];
+                let (tint, light) = self.values[(y * self.width + x) as usize];
                 if distance2 <= inner2 {
                     inside += tint;
                     inside_n += 1.0;
+                    let part = if distance2 <= middle2 { &mut middle } else { &mut ring };
+                    *part = (part.0 + light, part.1 + 1.0);
                 } else if (near2..far2).contains(&distance2) {
                     let (sum, n) = &mut around[sector(dx, dy)];
                     *sum += tint;
@@ -102,7 +138,9 @@ impl Tints {
         let total = around.iter().fold((0.0, 0.0), |(sum, n), (s, k)| (sum + s, n + k));
         let mut sides = around.map(|(sum, n)| (inside - sum / n.max(1.0)) / inside.max(0.05));
         sides.sort_by(f32::total_cmp);
-        Contrast { overall: inside - total.0 / f32::max(total.1, 1.0), weakest: sides[1] }
+        let mean = |(sum, n): (f32, f32)| sum / n.max(1.0);
+        let light_middle = (mean(middle) - mean(ring)) / self.lighter;
+        Contrast { overall: inside - mean(total), weakest: sides[1], light_middle }
     }
 }
 

@@ -35,6 +35,8 @@ pub(crate) struct Face {
     palest: f32,
     /// Brightness of the sign's colour over the face's.
     plainness: f32,
+    /// How much lighter than the sign's colour lettering is, levels.
+    lighter: f32,
     /// How much paleness and brightness go together on a clear face, levels².
     lettering: f32,
 }
@@ -64,8 +66,14 @@ impl Face {
             purity,
             palest: PALEST,
             plainness: brightness(own) / brightness(mean).max(1.0),
+            lighter,
             lettering: lettered * (1.0 - lettered) * lighter * purity,
         })
+    }
+
+    /// How much lighter than the sign's colour lettering is under the expected light, levels.
+    pub(crate) fn lighter(&self) -> f32 {
+        self.lighter * self.gain
     }
 
     pub(crate) fn with_palest(self, palest: f32) -> Self {
@@ -81,12 +89,12 @@ impl Face {
         (self.palest..DEEPEST).contains(&purity) && aside2 <= (TINT_SPREAD * along + TINT_NOISE).powi(2)
     }
 
-    /// How much of the tint a colour shows, 1 for the pure colour; negative of the opposite tint.
+    /// How much of the tint a colour shows, 1 for the pure colour.
     pub(crate) fn tint_of(&self, color: [f32; 3]) -> f32 {
         let away = away_from_grey(color);
         let along = dot(away, self.tint);
         let aside = (dot(away, away) - along * along).max(0.0).sqrt();
-        ((along - aside) / self.purity).min(1.2)
+        ((along - aside) / self.purity).clamp(0.0, 1.2)
     }
 
     /// How pale the middle of an object is against the ring around it, as a part of the pure saturation: lettering

@@ -15,7 +15,9 @@ use crate::probe::{Stage, StageProbe};
 const FIRST_SCORE: f32 = 0.30;
 /// One that is followed needs this part of its usual score.
 const FOLLOWED_PART: f32 = 0.35;
-/// A further object of the same landmark needs this part of the best one's score.
+/// A further object of the same landmark needs this score
+const FURTHER_SCORE: f32 = 0.5;
+/// and this part of the best one's score.
 const FURTHER_PART: f32 = 0.75;
 /// and this part of the area of the one that is known best.
 const FURTHER_SIZE: f32 = 0.12;
@@ -189,13 +191,15 @@ fn conclude(
         outcomes.push(advance(scene, landmark, track, pursuit));
     }
     let usual = usual_look(state);
+    let mut least_score = if state.tracks.is_empty() { FIRST_SCORE } else { FURTHER_SCORE };
     for candidate in further {
         let full = state.tracks.len() >= scene.options.max_instances as usize;
-        let least = FIRST_SCORE.max(FURTHER_PART * best_score.max(usual.score));
+        let least = least_score.max(FURTHER_PART * best_score.max(usual.score));
         if candidate.score < least || candidate.area_px2 < FURTHER_SIZE * usual.area_px2 || full {
             continue;
         }
         best_score = best_score.max(candidate.score);
+        least_score = FURTHER_SCORE;
         outcomes.push(begin(scene, landmark, state, &candidate));
     }
     forget(state);
