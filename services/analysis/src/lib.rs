@@ -6,6 +6,7 @@
 pub mod input;
 pub mod landmark_file;
 pub mod learn;
+pub mod overlays;
 pub mod region;
 pub mod register;
 pub mod row;

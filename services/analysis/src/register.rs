@@ -10,9 +10,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ingest::camera_thread::decode_into;
 use ingest::encoded::EncodedFrame;
 use vision::follow::{Follow, FollowOptions, FrameStamp};
-use vision::{LandmarkSet, NoProbe, Outcome};
+use vision::{Frame, LandmarkSet, NoProbe, Outcome};
 
 use crate::input::{Frames, Input, InputFrame, Live};
+use crate::overlays::{OverlayError, Overlays, series_name};
 use crate::stage_times::{FrameClock, StageTimes, thread_cpu_ns};
 
 /// Events of one input that may wait for their turn in the result; a full queue makes that input's thread wait.
@@ -29,6 +30,8 @@ pub struct Job {
     pub threads: NonZeroUsize,
     /// Whether stages are timed, which itself costs a little.
     pub timing: Timing,
+    /// Where pictures with the result drawn in go.
+    pub overlays: Option<Overlays>,
 }
 
 /// Whether stages are timed.
@@ -55,6 +58,8 @@ pub enum Event {
     },
     /// It could not be read or decoded, and is missing from the result.
     Lost(LostFrame),
+    /// It was looked at, but the picture of that could not be written.
+    NotDrawn(OverlayError),
 }
 
 /// A frame that is missing from the result.
@@ -77,7 +82,9 @@ pub fn register<E>(
     job: &Job,
     mut on_event: impl FnMut(&Input, Event) -> Result<(), E>,
 ) -> Result<StageTimes, E> {
-    let (queues, work): (Vec<_>, Vec<_>) = inputs.into_iter().map(queue).unzip();
+    let several = inputs.len() > 1;
+    let numbers = (1..).map(|number| several.then_some(number));
+    let (queues, work): (Vec<_>, Vec<_>) = inputs.into_iter().zip(numbers).map(queue).unzip();
     // Taken in the order of the inputs, so the input whose events are due is always being worked on.
     let work = Mutex::new(work.into_iter());
     let times = Mutex::new(StageTimes::default());
@@ -95,19 +102,29 @@ pub fn register<E>(
     Ok(times.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-type Work = (Frames, SyncSender<Event>);
+/// One input to work on.
+struct Work {
+    given: String,
+    /// Its number, where there are several inputs.
+    number: Option<usize>,
+    frames: Frames,
+    events: SyncSender<Event>,
+}
 
-fn queue((input, frames): (Input, Frames)) -> ((Input, Receiver<Event>), Work) {
-    let (sender, receiver) = sync_channel(QUEUED_EVENTS);
-    ((input, receiver), (frames, sender))
+fn queue(((input, frames), number): ((Input, Frames), Option<usize>)) -> ((Input, Receiver<Event>), Work) {
+    let (events, receiver) = sync_channel(QUEUED_EVENTS);
+    let work = Work { given: input.given.clone(), number, frames, events };
+    ((input, receiver), work)
 }
 
 /// Works on one input after the other until none is left or nobody listens any more.
 fn register_inputs(work: &Mutex<std::vec::IntoIter<Work>>, job: &Job) -> StageTimes {
     let mut times = StageTimes::default();
     let next = || work.lock().unwrap_or_else(PoisonError::into_inner).next();
-    while let Some((frames, events)) = next() {
-        let mut cameras = Cameras { job, cameras: BTreeMap::new(), pixels: Vec::new(), times };
+    while let Some(Work { given, number, frames, events }) = next() {
+        let series = |camera: Option<&str>| series_name(&given, number, camera);
+        let mut cameras =
+            Cameras { job, series: &series, cameras: BTreeMap::new(), pixels: Vec::new(), times };
         for frame in frames {
             if let Some(event) = cameras.on_frame(frame)
                 && events.send(event).is_err()
@@ -123,6 +140,8 @@ fn register_inputs(work: &Mutex<std::vec::IntoIter<Work>>, job: &Job) -> StageTi
 /// The state of every camera of one input.
 struct Cameras<'a> {
     job: &'a Job,
+    /// What a camera's overlays are called.
+    series: &'a dyn Fn(Option<&str>) -> String,
     cameras: BTreeMap<Option<Arc<str>>, Camera>,
     /// Storage of the last frame, used again for the next.
     pixels: Vec<u8>,
@@ -145,26 +164,32 @@ impl Cameras<'_> {
             (None, Live::Unknown) => Arc::default(),
             (None, Live::Dropped) => return None,
         };
-        let outcome =
-            picture.map_err(Into::into).and_then(|picture| self.outcome(camera.clone(), &set, &picture));
-        Some(match outcome {
-            Ok(outcome) => Event::Registered { frame, camera, outcome },
+        let seen = picture.map_err(Into::into).and_then(|picture| self.look_at(&camera, &set, &picture));
+        Some(match seen {
+            Ok((mut picture, outcome)) => {
+                let drawn = self.draw(frame, camera.as_deref(), &mut picture, &outcome);
+                self.pixels = picture.into_rgb();
+                match drawn {
+                    Ok(()) => Event::Registered { frame, camera, outcome },
+                    Err(error) => Event::NotDrawn(error),
+                }
+            }
             Err(reason) => Event::Lost(LostFrame { name, reason }),
         })
     }
 
-    fn outcome(
+    fn look_at(
         &mut self,
-        camera: Option<Arc<str>>,
+        camera: &Option<Arc<str>>,
         set: &Arc<LandmarkSet>,
         picture: &EncodedFrame,
-    ) -> Result<Outcome, Box<dyn Error + Send + Sync>> {
+    ) -> Result<(Frame, Outcome), Box<dyn Error + Send + Sync>> {
         let begun_ns = thread_cpu_ns();
         let frame = decode_into(picture, std::mem::take(&mut self.pixels))?;
         let decoded_ns = thread_cpu_ns();
         let stamp = FrameStamp { sequence: picture.sequence, captured_at: picture.captured_at };
         let options = self.job.options;
-        let camera = self.cameras.entry(camera).or_insert_with(|| Camera {
+        let camera = self.cameras.entry(camera.clone()).or_insert_with(|| Camera {
             follow: Follow::new(options, (**set).clone()),
             set: Arc::clone(set),
         });
@@ -178,8 +203,20 @@ impl Cameras<'_> {
                 outcome
             }
         };
-        self.pixels = frame.into_rgb();
-        Ok(outcome)
+        Ok((frame, outcome))
+    }
+
+    fn draw(
+        &self,
+        number: u64,
+        camera: Option<&str>,
+        frame: &mut Frame,
+        outcome: &Outcome,
+    ) -> Result<(), OverlayError> {
+        match &self.job.overlays {
+            Some(overlays) => overlays.write(&(self.series)(camera), number, frame, outcome),
+            None => Ok(()),
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! A recording registered again says what it said live, frame by frame and field by field.
 
+#![allow(clippy::unwrap_used)] // in a test, a panic with its place is the report
+
 use std::collections::BTreeSet;
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
@@ -138,8 +140,13 @@ fn drive(directory: &Path) -> (PathBuf, Vec<Outcome>) {
 fn replayed(input: &str, landmarks: Option<Arc<LandmarkSet>>) -> (Vec<u64>, Vec<Outcome>) {
     let input = Input::parse(input).unwrap();
     let frames = input.open().unwrap();
-    let job =
-        Job { landmarks, options: FollowOptions::default(), threads: NonZeroUsize::MIN, timing: Timing::Off };
+    let job = Job {
+        landmarks,
+        options: FollowOptions::default(),
+        threads: NonZeroUsize::MIN,
+        timing: Timing::Off,
+        overlays: None,
+    };
     let (mut numbers, mut outcomes) = (Vec::new(), Vec::new());
     let done = register(vec![(input, frames)], &job, |_, event| -> Result<(), Infallible> {
         let Event::Registered { frame, camera, outcome } = event else { panic!("{event:?}") };

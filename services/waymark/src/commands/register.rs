@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use analysis::input::{Frames, Input, InputError};
 use analysis::landmark_file::read_landmark_set;
+use analysis::overlays::Overlays;
 use analysis::register::{Event, Job, Timing, register};
 use analysis::row::{FrameKey, rows};
 use analysis::stage_times::StageTimes;
@@ -68,6 +69,10 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = FormatName::Csv)]
     format: FormatName,
 
+    /// Write every frame with the result drawn in as a JPEG into this directory
+    #[arg(long, value_name = "DIR")]
+    overlays: Option<PathBuf>,
+
     /// Write what each stage costs, in milliseconds of thread CPU time, as JSON
     #[arg(long, value_name = "FILE")]
     stats: Option<PathBuf>,
@@ -102,6 +107,7 @@ pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
         bar.inc(1);
         match event {
             Event::Lost(lost) => bar.suspend(|| tally.lose(console, &lost)),
+            Event::NotDrawn(error) => return Err(error.into()),
             Event::Registered { frame, camera, outcome } => {
                 tally.count(&outcome);
                 let key = FrameKey { input: &input.given, frame, camera: camera.as_deref() };
@@ -144,6 +150,7 @@ impl Args {
                 .threads
                 .or_else(|| std::thread::available_parallelism().ok())
                 .unwrap_or(NonZeroUsize::MIN),
+            overlays: self.overlays.clone().map(Overlays::into_directory).transpose().or_usage()?,
             timing: if self.stats.is_some() { Timing::On } else { Timing::Off },
         })
     }
