@@ -10,6 +10,9 @@ pub(crate) const FINISHED: &str = ".mcap";
 /// Extension of a recording that is being written, or whose writer died.
 pub(crate) const ACTIVE: &str = ".mcap.active";
 
+/// Extension of a recording for the moment between its creation and its lock.
+pub(crate) const STARTING: &str = ".starting";
+
 /// The name of a recording, without extension.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct FileName {

@@ -14,18 +14,14 @@ use mcap::{
 
 use crate::{
     Compression, RecordingError, WriterOptions, chunk,
-    file_name::{ACTIVE, FINISHED},
     scan::{self, End, Scanner},
-    storage::rename_new,
     walk::{CutChunk, Fault, FaultKind, RecordedMessage, Step, Walk},
     writer::ACCOUNTS_RECORD,
 };
 
-/// Extension of a file that recovery is writing.
-const RECOVERING: &str = ".recovering";
+mod leftovers;
 
-/// Extension of the original when recovery had to leave out more than a cut end.
-const DAMAGED: &str = ".damaged";
+pub use leftovers::{Leftover, Leftovers, recover_directory};
 
 /// What recovery found and kept.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,7 +36,7 @@ pub struct RecoverReport {
     pub chunks: u64,
     /// Faults found; empty when the file was complete.
     pub faults: Vec<Fault>,
-    /// Bytes of the input behind its last whole record.
+    /// Bytes of the input behind its last whole record; zero when only the summary was cut, which is rebuilt.
     pub cut_bytes: u64,
 }
 
@@ -58,6 +54,7 @@ impl RecoverReport {
             ("messages".to_owned(), self.messages.to_string()),
             ("chunks".to_owned(), self.chunks.to_string()),
             ("cut_bytes".to_owned(), self.cut_bytes.to_string()),
+            ("lost_data".to_owned(), self.lost_data().to_string()),
             ("faults".to_owned(), faults.join("\n")),
         ]);
         Metadata { name: RECOVERY_RECORD.to_owned(), metadata }
@@ -104,7 +101,7 @@ struct Outline {
     compression: Option<String>,
     /// The summary section's records.
     summary: Vec<Record<'static>>,
-    /// Bytes behind the last whole record, if the file is cut.
+    /// Bytes behind the last whole record, if the file is cut before the end of its data.
     cut_bytes: u64,
 }
 
@@ -122,7 +119,7 @@ impl Outline {
                 after_data |= record.opcode == op::DATA_END;
             }
         }
-        if let Some(End::Cut { offset, .. }) = scanner.end() {
+        if let (false, Some(End::Cut { offset, .. })) = (after_data, scanner.end()) {
             outline.cut_bytes = scanner.length().saturating_sub(*offset);
         }
         Ok(outline)
@@ -225,90 +222,6 @@ impl<'a> Copying<'a> {
         }
         Ok(())
     }
-}
-
-/// What start-up recovery did with one `.active` file.
-#[derive(Debug)]
-pub enum Leftover {
-    /// It was complete: only its renaming was missing.
-    Renamed(PathBuf),
-    /// It was cut; the recovered file has its final name. The original is deleted, or kept as
-    /// `NAME.mcap.damaged` when whole chunks of it were damaged.
-    Recovered(RecoverReport),
-    /// It could not be recovered and stays as it is.
-    Left(PathBuf, RecordingError),
-}
-
-/// Recovers every `.active` file in `directory` whose writer is gone (no process holds its lock).
-pub fn recover_directory(directory: &Path, options: &WriterOptions) -> Result<Vec<Leftover>, RecordingError> {
-    let entries = match fs::read_dir(directory) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        entries => entries.map_err(RecordingError::io("cannot list", directory))?,
-    };
-    let mut by_extension: BTreeMap<&str, Vec<PathBuf>> = BTreeMap::new();
-    for entry in entries {
-        let path = entry.map_err(RecordingError::io("cannot list", directory))?.path();
-        let name = path.to_string_lossy().into_owned();
-        let extension = [RECOVERING, ACTIVE].into_iter().find(|extension| name.ends_with(extension));
-        if let Some(extension) = extension {
-            by_extension.entry(extension).or_default().push(path);
-        }
-    }
-    for half_done in by_extension.remove(RECOVERING).unwrap_or_default() {
-        fs::remove_file(&half_done).map_err(RecordingError::io("cannot delete", &half_done))?;
-    }
-    let mut actives = by_extension.remove(ACTIVE).unwrap_or_default();
-    actives.sort();
-    let abandoned = actives.into_iter().filter_map(|path| lock(&path).map(|lock| (path, lock)));
-    Ok(abandoned
-        .map(|(path, _lock)| {
-            recover_leftover(&path, options).unwrap_or_else(|error| Leftover::Left(path, error))
-        })
-        .collect())
-}
-
-/// Locks the file unless its writer still does.
-fn lock(path: &Path) -> Option<File> {
-    let file = File::open(path).ok()?;
-    file.try_lock().ok().map(|()| file)
-}
-
-fn recover_leftover(active: &Path, options: &WriterOptions) -> Result<Leftover, RecordingError> {
-    let stem = active.to_string_lossy();
-    let finished = PathBuf::from(format!("{}{FINISHED}", stem.strip_suffix(ACTIVE).unwrap_or(&stem)));
-    if is_complete(active)? {
-        rename_new(active, &finished).map_err(RecordingError::io("cannot rename", active))?;
-        sync_directory_of(&finished)?;
-        return Ok(Leftover::Renamed(finished));
-    }
-    let recovering = PathBuf::from(format!("{}{RECOVERING}", finished.display()));
-    let report = recover(active, &recovering, options)?;
-    rename_new(&recovering, &finished).map_err(RecordingError::io("cannot rename", &recovering))?;
-    sync_directory_of(&finished)?;
-    if report.faults.iter().all(|fault| fault.kind == FaultKind::Cut) {
-        fs::remove_file(active).map_err(RecordingError::io("cannot delete", active))?;
-    } else {
-        // Somebody may know how to get more out of a damaged chunk.
-        let damaged = PathBuf::from(format!("{}{DAMAGED}", finished.display()));
-        rename_new(active, &damaged).map_err(RecordingError::io("cannot rename", active))?;
-    }
-    Ok(Leftover::Recovered(RecoverReport { output: finished, ..report }))
-}
-
-fn is_complete(path: &Path) -> Result<bool, RecordingError> {
-    let mut walk = Walk::open(path, CutChunk::Skip)?;
-    while let Some((_, step)) = walk.next_step()? {
-        if matches!(step, Step::Fault(_)) {
-            return Ok(false);
-        }
-    }
-    Ok(true)
-}
-
-fn sync_directory_of(path: &Path) -> Result<(), RecordingError> {
-    let directory = path.parent().unwrap_or(Path::new("."));
-    let synced = File::open(directory).and_then(|directory| directory.sync_all());
-    synced.map_err(RecordingError::io("cannot sync", directory))
 }
 
 #[cfg(test)]

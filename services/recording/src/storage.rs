@@ -7,7 +7,7 @@ use std::{
 
 use rustix::fs::{CWD, RenameFlags};
 
-use crate::file_name::{FINISHED, FileName};
+use crate::file_name::{FINISHED, FileName, STARTING};
 
 #[cfg(test)]
 pub(crate) mod faulty;
@@ -101,9 +101,15 @@ impl Storage for Disk {
 
     fn create_new(&mut self, name: &str) -> io::Result<fs::File> {
         fs::create_dir_all(&self.directory)?;
-        let file = fs::File::options().write(true).create_new(true).open(self.path(name))?;
-        // Held until the file is closed: start-up recovery of another process leaves it alone.
+        // Locked until it is closed, so that start-up recovery of another process leaves it alone; it gets its
+        // name only then, so that there is no moment in which a recording stands there unlocked.
+        let starting = self.path(&format!("{name}{STARTING}"));
+        let file = fs::File::options().write(true).create_new(true).open(&starting)?;
         file.try_lock().map_err(io::Error::from)?;
+        if let Err(error) = rename_new(&starting, &self.path(name)) {
+            let _ = fs::remove_file(&starting);
+            return Err(error);
+        }
         self.sync_directory()?;
         Ok(file)
     }

@@ -8,6 +8,7 @@ use prost_reflect::{DescriptorPool, DynamicMessage, MessageDescriptor};
 use super::{Aspect, Check, Severity};
 use crate::{
     Ledger, RecordingError,
+    recover::RECOVERY_RECORD,
     walk::{FaultKind, RecordedChannel, RecordedMessage, Step, Walk},
     writer::ACCOUNTS_RECORD,
 };
@@ -22,6 +23,9 @@ pub(super) fn check(walk: &mut Walk<impl Read>, check: &mut Check) -> Result<(),
             Step::Message(message) => pass.message(offset, &message),
             Step::Record(Record::Metadata(metadata)) if metadata.name == ACCOUNTS_RECORD => {
                 pass.accounts = Some(Ledger::from_metadata(&metadata.metadata));
+            }
+            Step::Record(Record::Metadata(metadata)) if metadata.name == RECOVERY_RECORD => {
+                pass.recovered(&metadata.metadata);
             }
             // The structure pass reports the other faults.
             Step::Fault(kind @ (FaultKind::UnknownChannel { .. } | FaultKind::UnknownSchema { .. })) => {
@@ -91,6 +95,16 @@ impl Pass<'_> {
             backwards: 0,
             ahead_of_receipt: 0,
         }
+    }
+
+    fn recovered(&mut self, record: &BTreeMap<String, String>) {
+        let said = |key: &str| record.get(key).map_or("", String::as_str);
+        let lost_data = said("lost_data") == "true";
+        let severity = if lost_data { Severity::Loss } else { Severity::Note };
+        let (input, cut_bytes) = (said("input"), said("cut_bytes"));
+        let text =
+            format!("recovered from {input}, {cut_bytes} bytes were cut; faults then: {}", said("faults"));
+        self.check.add(severity, Aspect::Loss, None, text);
     }
 
     fn end(&mut self) {

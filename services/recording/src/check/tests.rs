@@ -69,6 +69,24 @@ fn losses_make_the_verdict() {
 }
 
 #[test]
+fn a_recovered_file_is_valid_and_says_so() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = finished(directory.path());
+    let content = fs::read(&path).unwrap();
+    for (kept_bytes, verdict) in
+        [(content.len() - 1, Verdict::Fine), (content.len() / 2, Verdict::DataLost), (300, Verdict::DataLost)]
+    {
+        let (cut, output) = (directory.path().join("cut"), directory.path().join("out.mcap"));
+        fs::write(&cut, &content[..kept_bytes]).unwrap();
+        crate::recover::recover(&cut, &output, &crate::WriterOptions::default()).unwrap();
+        let check = check(&output).unwrap();
+        assert!(check.findings.iter().any(|f| f.message.starts_with("recovered from cut")), "{check:?}");
+        assert_eq!(check.verdict(), verdict, "{kept_bytes} bytes kept");
+        fs::remove_file(output).unwrap();
+    }
+}
+
+#[test]
 fn messages_are_held_against_their_schema() {
     let directory = tempfile::tempdir().unwrap();
     let mut recorder = recorder(options(directory.path()));

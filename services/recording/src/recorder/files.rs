@@ -34,8 +34,6 @@ impl<S: Storage> Recorder<S> {
         self.settled.add(file.writer.stored());
         self.files_finished += 1;
         let bytes = file.writer.bytes();
-        // Closed before it gets its final name: nobody sees a finished file that is still locked.
-        drop(file);
         if let Err(source) = self.storage.rename(&active, &finished) {
             self.last_file = Some((active.clone(), bytes));
             let error = RecordingError::io("cannot rename", self.storage.path(&active))(source);
