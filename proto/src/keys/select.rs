@@ -3,7 +3,7 @@
 use super::{CameraStream, Id, InvalidId, Key, ROOT, Resource};
 
 /// Builds the key expressions of one vehicle.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VehicleKeys {
     fleet: Id,
     vehicle: Id,
@@ -16,6 +16,12 @@ impl VehicleKeys {
     /// When one of them is no [`Id`].
     pub fn new(fleet: &str, vehicle: &str) -> Result<Self, InvalidId> {
         Ok(Self { fleet: Id::new("fleet", fleet)?, vehicle: Id::new("vehicle", vehicle)? })
+    }
+
+    /// The keys of the vehicle that `key` belongs to.
+    #[must_use]
+    pub fn of_key(key: &Key) -> Self {
+        Self { fleet: key.fleet.clone(), vehicle: key.vehicle.clone() }
     }
 
     /// The fleet.

@@ -83,16 +83,25 @@ impl LandmarkClient {
         let mut incomplete = self.no_answer();
         for _ in 0..FETCH_ROUNDS {
             let Some(manifest) = self.manifest().await? else { continue };
-            let answers = self.landmarks().await?;
-            let received = answers.values().map(Vec::len).max().unwrap_or(0);
-            let announced = manifest.count;
-            let candidates = answers.into_values().chain([Vec::new()]);
-            if let Some(set) = candidates.map(|landmarks| set_of(&manifest, landmarks)).find_map(|set| set) {
-                return Ok(set);
+            match self.fetch(&manifest).await {
+                Err(error @ ClientError::Incomplete { .. }) => incomplete = error,
+                fetched => return fetched,
             }
-            incomplete = ClientError::Incomplete { vehicle: self.vehicle(), received, announced };
         }
         Err(incomplete)
+    }
+
+    /// The set that `manifest` describes, asked for once.
+    ///
+    /// # Errors
+    /// When nobody's answer is that set.
+    pub async fn fetch(&self, manifest: &Manifest) -> Result<LandmarkSet, ClientError> {
+        let answers = self.landmarks().await?;
+        let received = answers.values().map(Vec::len).max().unwrap_or(0);
+        let candidates = answers.into_values().chain([Vec::new()]);
+        candidates.map(|landmarks| set_of(manifest, landmarks)).find_map(|set| set).ok_or_else(|| {
+            ClientError::Incomplete { vehicle: self.vehicle(), received, announced: manifest.count }
+        })
     }
 
     /// Asks the leader for an edit and returns what the set is then.

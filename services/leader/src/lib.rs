@@ -2,7 +2,8 @@
 //!
 //! [`book`] decides what the set is, [`memory`] keeps it from one start to the next, [`publication`] turns it into
 //! messages, [`answers`] gives them to whoever asks and [`announcements`] to whoever listens; [`run`] puts them
-//! together. [`client`] is the other side: what the command line says to a running leader.
+//! together. [`client`] is the other side: what the command line says to a running leader. [`store`] remembers the sets of
+//! all leaders for a router.
 
 mod announcements;
 mod answers;
@@ -15,6 +16,7 @@ mod memory;
 mod publication;
 mod run;
 mod status;
+pub mod store;
 mod web;
 
 pub use book::{Change, Edit, Others, RefusedEdit};

@@ -6,8 +6,8 @@ use axum::extract::{Path, State};
 use axum::http::HeaderMap;
 use axum::response::Response;
 use axum::routing::get;
-use axum::{Json, Router};
-use http_face::{Check, Problem, conditional, entity_tag, health, metrics_text, page};
+use axum::{Extension, Json, Router};
+use http_face::{Check, Counters, Problem, conditional, entity_tag, health, metrics_text, page};
 use metrics::{counter, gauge};
 use metrics_exporter_prometheus::PrometheusBuilder;
 use runtime::Identity;
@@ -78,7 +78,7 @@ async fn status(State(face): Shared) -> Json<LeaderStatus> {
 }
 
 /// A recorder of its own for each scrape: two services in one process never mix their figures.
-async fn metrics(State(face): Shared) -> Response {
+async fn metrics(State(face): Shared, Extension(refusals): Extension<Arc<Counters>>) -> Response {
     let status = face.status().await;
     let recorder = PrometheusBuilder::new().build_recorder();
     metrics::with_local_recorder(&recorder, || {
@@ -89,6 +89,9 @@ async fn metrics(State(face): Shared) -> Response {
         gauge!("waymark_router_connected").set(f64::from(u8::from(status.router.connected)));
         counter!("waymark_landmark_edits_total", "result" => "made").absolute(status.edits.made);
         counter!("waymark_landmark_edits_total", "result" => "refused").absolute(status.edits.refused);
+        for (reason, count) in refusals.by_reason() {
+            counter!("waymark_http_refused_total", "reason" => reason).absolute(count);
+        }
     });
     metrics_text(recorder.handle().render())
 }
