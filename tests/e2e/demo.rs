@@ -130,5 +130,6 @@ pub(crate) fn assert_opens_elsewhere(file: &Path) {
     let script = workspace().join("tests/python/check_recording.py");
     let output = Command::new(python).arg(script).arg(file).output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
+    // 3: the file is right, and says that messages were lost; how many is asserted elsewhere.
+    assert!(matches!(output.status.code(), Some(0 | 3)), "{said}");
 }

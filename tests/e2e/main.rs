@@ -6,3 +6,4 @@ mod crash;
 mod demo;
 mod dependency_rule;
 mod documented_commands;
+mod landmarks;
