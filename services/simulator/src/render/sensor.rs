@@ -5,14 +5,16 @@ use rand_pcg::Pcg32;
 
 use super::canvas::Canvas;
 
-/// Standard deviation of the table's entries; four of them fit into an i8.
-const TABLE_SIGMA: f32 = 31.0;
+/// Standard deviation of the table's entries; nearly four of them fit into an i8.
+const TABLE_SIGMA: f32 = 32.0;
 const TABLE_LENGTH: usize = 1 << 16;
 
 /// Noise without light, levels.
 const READ_SIGMA: f32 = 1.8;
 /// Growth of the noise with the level.
 const SHOT_SIGMA_PER_LEVEL: f32 = 0.008;
+/// The greatest gain that the 16-bit arithmetic carries.
+const MOST_GAIN: f64 = 4.0;
 
 /// A table of Gaussian noise, read from a random place for every row.
 #[derive(Debug)]
@@ -30,27 +32,25 @@ impl Sensor {
     /// Multiplies each channel by its gain and adds the noise of frame `index`.
     pub(crate) fn expose(&self, gain: [f64; 3], index: u64, canvas: &mut Canvas) {
         let mut random = Pcg32::seed_from_u64(self.seed ^ index.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-        let gain_q8 = gain.map(|factor| (factor * 256.0).round() as i32);
+        let samples = 3 * canvas.size().width as usize;
+        let gain_q10 = gain.map(|factor| (factor.clamp(0.0, MOST_GAIN) * 1_024.0).round() as u16);
+        let gain_q10: Vec<u16> = gain_q10.into_iter().cycle().take(samples).collect();
         for row in canvas.rows_mut() {
-            for part in row.chunks_mut(3 * 1_024) {
-                let start = random.random_range(0..TABLE_LENGTH - part.len());
-                expose_row(part, gain_q8, &self.noise[start..start + part.len()]);
-            }
+            let start = random.random_range(0..TABLE_LENGTH - samples);
+            expose_row(row, &gain_q10, &self.noise[start..start + samples]);
         }
     }
 }
 
-fn expose_row(row: &mut [u8], gain_q8: [i32; 3], noise: &[i8]) {
-    const READ_Q8: i32 = (READ_SIGMA * 256.0) as i32;
-    const SHOT_Q8: i32 = (SHOT_SIGMA_PER_LEVEL * 256.0) as i32;
-    const SCALE: i32 = TABLE_SIGMA as i32 * 256;
-    for (pixel, noise) in row.as_chunks_mut::<3>().0.iter_mut().zip(noise.as_chunks::<3>().0) {
-        for channel in 0..3 {
-            let level = (i32::from(pixel[channel]) * gain_q8[channel]) >> 8;
-            let sigma_q8 = READ_Q8 + SHOT_Q8 * level;
-            pixel[channel] = (level + (i32::from(noise[channel]) * sigma_q8 + SCALE / 2).div_euclid(SCALE))
-                .clamp(0, 255) as u8;
-        }
+/// In 16 bits throughout, which lets the compiler take eight samples at a time on any x86-64.
+fn expose_row(row: &mut [u8], gain_q10: &[u16], noise: &[i8]) {
+    const READ_Q4: i16 = (READ_SIGMA * 16.0) as i16;
+    const SHOT_Q12: i16 = (SHOT_SIGMA_PER_LEVEL * 4_096.0) as i16;
+    for ((sample, &gain), &noise) in row.iter_mut().zip(gain_q10).zip(noise) {
+        let level_q2 = ((u32::from(u16::from(*sample) << 8) * u32::from(gain)) >> 16) as i16;
+        let sigma_q4 = READ_Q4 + (((level_q2 >> 2).min(255) * SHOT_Q12) >> 8);
+        let noise_q2 = (i16::from(noise) * sigma_q4) >> 7;
+        *sample = ((level_q2 + noise_q2 + 2) >> 2).clamp(0, 255) as u8;
     }
 }
 

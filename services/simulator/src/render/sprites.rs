@@ -21,6 +21,8 @@ pub(crate) struct Brush {
     coverage: Coverage,
     /// Colour of the surface in one pixel times its weight, and the weight.
     surface: Vec<[f32; 4]>,
+    /// Opacity alone, summed over the exposure.
+    opacity: Vec<f32>,
     /// Colour times opacity, and opacity, summed over the exposure.
     layer: Vec<[f32; 4]>,
 }
@@ -51,6 +53,10 @@ impl Brush {
             return;
         }
         let region = Region::around([left, top, right, bottom]);
+        if let Some(colour) = only_colour(&looks) {
+            self.draw_flat(&looks, colour, &region, canvas);
+            return;
+        }
         self.layer.clear();
         self.layer.resize(region.pixels(), [0.0; 4]);
         for look in looks.iter().filter(|look| !look.silhouette.is_empty()) {
@@ -65,16 +71,34 @@ impl Brush {
         }
     }
 
+    /// The short way for things of one colour: only their opacity is averaged.
+    fn draw_flat(&mut self, looks: &[Look], colour: Colour, region: &Region, canvas: &mut Canvas) {
+        self.opacity.clear();
+        self.opacity.resize(region.pixels(), 0.0);
+        for look in looks {
+            let parts = self.coverage.of(&look.silhouette, region);
+            for (sum, part) in self.opacity.iter_mut().zip(parts) {
+                *sum += part;
+            }
+        }
+        let weight = 1.0 / looks.len() as f32;
+        let colour = colour.map(|level| level as f32);
+        for (row, sums) in canvas.region_rows_mut(region).zip(self.opacity.chunks_exact(region.columns.len()))
+        {
+            for (pixel, sum) in row.iter_mut().zip(sums).filter(|(_, sum)| **sum > 0.0) {
+                let over = |channel: usize| {
+                    let under = f32::from(pixel[channel]);
+                    (under + (colour[channel] - under) * sum * weight + 0.5) as u8
+                };
+                *pixel = [over(0), over(1), over(2)];
+            }
+        }
+    }
+
     /// The surface's colour first, then the outline's exact coverage as its opacity: faces that share an edge leave
     /// no seam, and the edge of the whole is as sharp as the truth says.
     fn add_look(&mut self, look: &Look, region: &Region, weight: f32) {
-        match &look.faces[..] {
-            [(_, colour, _)] => {
-                self.surface.clear();
-                self.surface.resize(region.pixels(), with_weight(*colour, 1.0));
-            }
-            _ => self.paint_surface(look, region),
-        }
+        self.paint_surface(look, region);
         let parts = self.coverage.of(&look.silhouette, region);
         for ((layer, &[r, g, b, sum]), part) in self.layer.iter_mut().zip(&self.surface).zip(parts) {
             if *part > 0.0 && sum > 0.0 {
@@ -107,6 +131,16 @@ impl Brush {
             }
         }
     }
+}
+
+/// The colour of a thing that shows one face, and the same one, at every moment.
+fn only_colour(looks: &[Look]) -> Option<Colour> {
+    let colour_of = |look: &Look| match look.faces[..] {
+        [(_, colour, _)] => Some(colour),
+        _ => None,
+    };
+    let first = looks.first().and_then(colour_of)?;
+    looks.iter().all(|look| colour_of(look) == Some(first)).then_some(first)
 }
 
 fn with_weight([r, g, b]: Colour, weight: f32) -> [f32; 4] {
