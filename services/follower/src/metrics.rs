@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use http_face::{Cameras, Counters};
+use ingest::camera_thread::Registered;
 use metrics::{counter, gauge};
 use metrics_exporter_prometheus::PrometheusBuilder;
 
@@ -15,6 +17,8 @@ pub(crate) fn exposition(
     status: &VehicleStatus,
     stations: &[Arc<Station>],
     landmarks: &LandmarkCounters,
+    cameras: &Cameras<Registered>,
+    refusals: &Counters,
 ) -> String {
     let recorder = PrometheusBuilder::new().build_recorder();
     metrics::with_local_recorder(&recorder, || {
@@ -23,8 +27,19 @@ pub(crate) fn exposition(
         for (reason, count) in landmarks.by_reason() {
             counter!("waymark_landmark_messages_ignored_total", "reason" => reason).absolute(count);
         }
+        face(cameras, refusals);
     });
     recorder.handle().render()
+}
+
+/// The web face: what it encoded for viewers, and whom it turned away.
+fn face(cameras: &Cameras<Registered>, refusals: &Counters) {
+    for (camera, encoded) in cameras.encoded() {
+        counter!("waymark_http_encodes_total", "camera" => camera.to_owned()).absolute(encoded);
+    }
+    for (reason, count) in refusals.by_reason() {
+        counter!("waymark_http_refused_total", "reason" => reason).absolute(count);
+    }
 }
 
 fn vehicle(status: &VehicleStatus) {

@@ -7,9 +7,9 @@ use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use axum::{Json, Router};
+use axum::{Extension, Json, Router};
 use http_face::{
-    Cameras, Check, Events, Picture, Problem, conditional, entity_tag, health, metrics_text, page,
+    Cameras, Check, Counters, Events, Picture, Problem, conditional, entity_tag, health, metrics_text, page,
 };
 use ingest::camera_thread::Registered;
 use recording::{Command, Journal};
@@ -120,8 +120,10 @@ async fn ready(State(face): Shared) -> Response {
     health(&face.checks().await)
 }
 
-async fn metrics(State(face): Shared) -> Response {
-    metrics_text(metrics::exposition(&face.status().await, &face.stations, &face.landmark_counters))
+async fn metrics(State(face): Shared, Extension(refusals): Extension<Arc<Counters>>) -> Response {
+    let status = face.status().await;
+    let text = metrics::exposition(&status, &face.stations, &face.landmark_counters, &face.cameras, &refusals);
+    metrics_text(text)
 }
 
 async fn status(State(face): Shared) -> Json<VehicleStatus> {
