@@ -1,5 +1,7 @@
 //! What a camera is told at its start.
 
+use runtime::SessionSettings;
+use runtime::telemetry::LogSettings;
 use serde::{Deserialize, Serialize};
 
 /// One camera of one vehicle.
@@ -20,6 +22,10 @@ pub struct CameraConfig {
     pub jpeg_quality: u8,
     /// What happens at the end of a directory or recording.
     pub at_end: AtEnd,
+    /// How the others are reached.
+    pub zenoh: SessionSettings,
+    /// What is logged on standard error.
+    pub log: LogSettings,
 }
 
 /// What happens at the end of a source.
@@ -43,6 +49,8 @@ impl Default for CameraConfig {
             frame_rate_hz: 30.0,
             jpeg_quality: 90,
             at_end: AtEnd::default(),
+            zenoh: SessionSettings::default(),
+            log: LogSettings::default(),
         }
     }
 }

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 
+use runtime::SessionSettings;
+use runtime::telemetry::LogSettings;
 use serde::{Deserialize, Serialize};
 use vision::follow::{FollowOptions, Mode};
 use vision::predict::PredictionMethod;
@@ -30,6 +32,10 @@ pub struct FollowerConfig {
     pub http: HttpConfig,
     /// The recorder.
     pub recorder: RecorderConfig,
+    /// How the others are reached.
+    pub zenoh: SessionSettings,
+    /// What is logged on standard error.
+    pub log: LogSettings,
 }
 
 /// The web face of a vehicle.
@@ -96,6 +102,8 @@ impl Default for FollowerConfig {
             state_dir: PathBuf::from("state/follower"),
             http: HttpConfig::default(),
             recorder: RecorderConfig::default(),
+            zenoh: SessionSettings::default(),
+            log: LogSettings::default(),
         }
     }
 }

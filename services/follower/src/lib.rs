@@ -15,6 +15,7 @@ mod landmark_documents;
 mod landmark_feed;
 mod landmark_log;
 mod leader_watch;
+mod leftovers;
 mod metrics;
 mod outbound;
 mod pictures_out;

@@ -22,6 +22,7 @@ use crate::error::FollowerError;
 use crate::landmark_feed::LandmarkFeed;
 use crate::landmark_log::LandmarkLog;
 use crate::leader_watch::LeaderWatch;
+use crate::leftovers;
 use crate::pictures_out;
 use crate::post::Post;
 use crate::set_file::SetFile;
@@ -63,6 +64,7 @@ pub async fn run(
     let state = StateDir::open(&config.state_dir)?;
     let identity = Identity::on(&state);
     let _presence = announce(&session, &own, &identity).await?;
+    leftovers::recover(&config.recorder.directory);
     let journal = Arc::new(Journal::start(journal_options(&config))?);
     let landmark_counters = Arc::new(LandmarkCounters::default());
     let file = SetFile::new(state, &config.leader);

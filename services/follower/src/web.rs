@@ -122,7 +122,8 @@ async fn ready(State(face): Shared) -> Response {
 
 async fn metrics(State(face): Shared, Extension(refusals): Extension<Arc<Counters>>) -> Response {
     let status = face.status().await;
-    let text = metrics::exposition(&status, &face.stations, &face.landmark_counters, &face.cameras, &refusals);
+    let text =
+        metrics::exposition(&status, &face.stations, &face.landmark_counters, &face.cameras, &refusals);
     metrics_text(text)
 }
 

@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{completion, landmark, recording, register};
+use crate::commands::{camera, completion, demo, follower, landmark, leader, recording, register, router};
 
 /// What stands below the options.
 const EXIT_CODES: &str = "Exit codes: 0 fine, 1 failed, 2 usage or configuration, 3 finished with data lost.";
@@ -25,6 +25,13 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    Demo(demo::Args),
+    Leader(leader::Args),
+    Follower(follower::Args),
+    Camera(camera::Args),
+    /// Publish a simulated camera; the same as `camera`, whose default source is a simulator
+    Simulate(camera::Args),
+    Router(router::Args),
     #[command(subcommand)]
     Landmark(landmark::Command),
     Register(register::Args),

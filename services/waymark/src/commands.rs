@@ -1,9 +1,15 @@
 //! One file a command: its arguments, and what it does with them.
 
+pub(crate) mod camera;
 pub(crate) mod completion;
+pub(crate) mod demo;
+pub(crate) mod follower;
 pub(crate) mod landmark;
+pub(crate) mod leader;
 pub(crate) mod recording;
 pub(crate) mod register;
+pub(crate) mod router;
+mod service;
 
 use crate::cli::{Cli, Command};
 use crate::console::Console;
@@ -13,6 +19,11 @@ use crate::exit::{Ending, Failure};
 pub(crate) fn run(cli: Cli) -> Result<Ending, Failure> {
     let console = if cli.quiet { Console::Quiet } else { Console::Talkative };
     match cli.command {
+        Command::Demo(args) => demo::run(&args, console),
+        Command::Leader(args) => leader::run(&args),
+        Command::Follower(args) => follower::run(&args),
+        Command::Camera(args) | Command::Simulate(args) => camera::run(&args),
+        Command::Router(args) => router::run(&args),
         Command::Landmark(command) => landmark::run(command, console),
         Command::Recording(command) => recording::run(command, console),
         Command::Register(args) => register::run(&args, console),

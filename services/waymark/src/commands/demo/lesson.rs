@@ -1,0 +1,77 @@
+//! What the demo's leader teaches: landmarks learned from its own camera, in boxes as a person would draw them.
+
+use simulator::{SceneKind, SceneOptions, Simulator, TrueObject};
+use vision::learn::{LearnOptions, learn};
+use vision::{Frame, Landmark, RectPx, ShapeClass};
+use waymark_proto::digest::landmark_digest;
+
+/// The vehicle number of the leader among the scene's vehicles.
+pub(super) const LEADER: u32 = 0;
+/// The vehicle number of the follower.
+pub(super) const FOLLOWER: u32 = 1;
+
+/// Frames of the leader's drive that are looked through for a good view of each object.
+const SURVEYED_FRAMES: std::ops::Range<u64> = 0..60;
+/// A box smaller than this shows too little of an object to learn it.
+const LEAST_SIDE_PX: u32 = 8;
+
+/// What is learned in a scene: the landmark's id, the objects it stands for (all whose names begin so), its shape.
+const fn subjects(scene: SceneKind) -> &'static [(&'static str, ShapeClass)] {
+    match scene {
+        SceneKind::Rink => &[("red", ShapeClass::Block), ("blue", ShapeClass::Block)],
+        SceneKind::StopSign => &[("sign", ShapeClass::Octagon)],
+        SceneKind::GreenSigns => &[("sign", ShapeClass::Rectangle)],
+    }
+}
+
+/// Learns every subject of the scene from the leader's own pictures.
+pub(super) fn learn_from(scene: SceneKind, seed: u64) -> anyhow::Result<Vec<Landmark>> {
+    let options = SceneOptions { seed, vehicle: LEADER, ..SceneOptions::new(scene) };
+    let mut simulator = Simulator::new(options)?;
+    let views: Vec<(Frame, Vec<TrueObject>)> = SURVEYED_FRAMES
+        .step_by(10)
+        .map(|frame| {
+            let rendered = simulator.render(frame);
+            (rendered.frame, rendered.truth)
+        })
+        .collect();
+    subjects(scene).iter().map(|&(id, shape)| landmark(id, shape, &views)).collect()
+}
+
+/// Learns one landmark from the picture in which its object is largest and wholly visible.
+fn landmark(id: &str, shape: ShapeClass, views: &[(Frame, Vec<TrueObject>)]) -> anyhow::Result<Landmark> {
+    let seen = views.iter().flat_map(|(frame, truth)| truth.iter().map(move |object| (frame, object)));
+    let whole = seen.filter(|(_, object)| object.object.starts_with(id) && object.visible > 0.99);
+    let best = whole.max_by(|(_, a), (_, b)| a.area_px2.total_cmp(&b.area_px2));
+    let (frame, object) =
+        best.ok_or_else(|| anyhow::anyhow!("`{id}` does not show in the leader's first pictures"))?;
+    let region = box_around(object);
+    anyhow::ensure!(
+        region.width.min(region.height) >= LEAST_SIDE_PX,
+        "`{id}` is never larger than {}×{} pixels in the leader's first pictures",
+        region.width,
+        region.height
+    );
+    let options = LearnOptions { id: id.to_owned(), shape, ..LearnOptions::default() };
+    let learned = learn(&[(frame, region)], &options)?;
+    Ok(Landmark { digest: landmark_digest(&learned), ..learned })
+}
+
+fn box_around(object: &TrueObject) -> RectPx {
+    let [left, top, right, bottom] = object.bbox_px;
+    let (x, y) = (left.floor().max(0.0) as u32, top.floor().max(0.0) as u32);
+    RectPx { x, y, width: right.floor() as u32 - x, height: bottom.floor() as u32 - y }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_can_be_taught() {
+        for scene in [SceneKind::Rink, SceneKind::StopSign, SceneKind::GreenSigns] {
+            let landmarks = learn_from(scene, 1).unwrap_or_else(|error| panic!("{scene}: {error}"));
+            assert_eq!(landmarks.len(), subjects(scene).len());
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! The built program, as people and scripts use it: arguments in, text and exit code out.
+
+#![allow(clippy::unwrap_used)] // in a test, a panic with its place is the report
+
+mod landmarks;
+mod program;
+mod recordings;
+mod register;
+mod scene;
+mod usage;
