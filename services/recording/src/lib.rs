@@ -12,6 +12,7 @@ mod account;
 pub mod check;
 mod chunk;
 mod error;
+pub mod excerpt;
 mod file_name;
 pub mod info;
 mod journal;
@@ -26,6 +27,7 @@ pub mod recover;
 pub mod scan;
 mod status;
 mod storage;
+pub mod summary;
 #[cfg(test)]
 mod testing;
 pub mod walk;
