@@ -14,6 +14,8 @@ pub(crate) mod palette;
 mod patch;
 mod segment;
 mod soft_edge;
+mod tracing;
 
 pub(crate) use candidate::{Candidate, Search, candidates};
 pub(crate) use likeness::Likeness;
+pub(crate) use tracing::Tracer;

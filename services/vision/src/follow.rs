@@ -6,6 +6,7 @@
 mod budget;
 mod faithful;
 mod pursue;
+mod reason;
 mod report;
 mod state;
 
@@ -14,10 +15,11 @@ pub use state::{FollowState, LandmarkState, Track};
 use std::fmt;
 use std::sync::Arc;
 
-use crate::adaptive::noise;
+use crate::adaptive::{Likeness, Search, Tracer, noise};
 use crate::frame::Frame;
+use crate::geometry::RectPx;
 use crate::landmark::{Landmark, LandmarkSet};
-use crate::outcome::{LandmarkOutcome, Outcome};
+use crate::outcome::{LandmarkOutcome, Miss, Outcome};
 use crate::predict::PredictionMethod;
 use crate::probe::StageProbe;
 use crate::register::{ShapeVeto, Workspace};
@@ -68,7 +70,7 @@ impl Default for FollowOptions {
             prediction: PredictionMethod::default(),
             shape_veto: ShapeVeto::default(),
             max_instances: 32,
-            budget_px: 64 * 1280 * 720,
+            budget_px: 24 * 1280 * 720,
         }
     }
 }
@@ -90,6 +92,21 @@ struct Scene<'a> {
     options: FollowOptions,
 }
 
+impl<'a> Scene<'a> {
+    /// What it takes to look for a landmark in a part of the frame, at `seeds` places closely.
+    fn search(
+        &self,
+        landmark: &'a Landmark,
+        region: RectPx,
+        likeness: &'a Likeness,
+        gain: f32,
+        seeds: usize,
+    ) -> Search<'a> {
+        let noise_variance = self.noise_variance;
+        Search { frame: self.frame, region, landmark, likeness, gain, noise_variance, limit: seeds }
+    }
+}
+
 /// Follows all landmarks of a set through the frames of one camera.
 pub struct Follow {
     options: FollowOptions,
@@ -97,11 +114,12 @@ pub struct Follow {
     state: FollowState,
     /// Memory only: no outcome depends on what earlier frames left in it.
     workspace: Workspace,
+    tracer: Tracer,
 }
 
 impl fmt::Debug for Follow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { options, set, state, workspace: _ } = self;
+        let Self { options, set, state, workspace: _, tracer: _ } = self;
         f.debug_struct("Follow")
             .field("options", options)
             .field("set", set)
@@ -120,8 +138,13 @@ impl Follow {
     /// A follower that continues from `state`. Landmarks that are not the same in `set` start anew.
     #[must_use]
     pub fn restore(options: FollowOptions, set: LandmarkSet, state: FollowState) -> Self {
-        let mut follow =
-            Self { options, set: LandmarkSet::default(), state, workspace: Workspace::default() };
+        let mut follow = Self {
+            options,
+            set: LandmarkSet::default(),
+            state,
+            workspace: Workspace::default(),
+            tracer: Tracer::default(),
+        };
         follow.set_landmarks(set);
         follow
     }
@@ -178,28 +201,39 @@ impl Follow {
         }
     }
 
-    /// Every landmark in turn, beginning where the last frame's budget ended; the outcomes in the order of the set.
+    /// Every landmark, in the order of the set. Those that are followed come first; the others begin with the one
+    /// that the last frame's budget did not reach.
     fn register_all<P: StageProbe>(&mut self, scene: &Scene<'_>, probe: &mut P) -> Vec<LandmarkOutcome> {
         let count = self.set.landmarks.len();
+        let first = self.state.turn.min(count);
+        let (mut order, unseen): (Vec<usize>, Vec<usize>) =
+            (first..count).chain(0..first).partition(|&at| !self.state.landmarks[at].tracks.is_empty());
+        order.extend(unseen);
         let mut budget = Budget::new(self.options.budget_px);
         let mut outcomes: Vec<Vec<LandmarkOutcome>> = vec![Vec::new(); count];
-        let first = self.state.turn.min(count.saturating_sub(1));
-        let mut next_turn = 0;
-        for at in (first..count).chain(0..first) {
-            let (landmark, state) = (&self.set.landmarks[at], &mut self.state.landmarks[at]);
-            outcomes[at] = if budget.is_spent() {
-                pursue::skipped(landmark, state, scene)
-            } else {
-                next_turn = (at + 1) % count;
-                match scene.options.mode {
-                    Mode::Faithful => {
-                        faithful::landmark(scene, landmark, state, &mut budget, &mut self.workspace, probe)
-                    }
-                    Mode::Adaptive => pursue::landmark(scene, landmark, state, &mut budget, probe),
-                }
-            };
+        let mut unreached = None;
+        for at in order {
+            outcomes[at] = self.register(scene, at, &mut budget, probe);
+            let skipped = outcomes[at].iter().any(|outcome| outcome.result == Err(Miss::Skipped));
+            if skipped && unreached.is_none() && self.state.landmarks[at].tracks.is_empty() {
+                unreached = Some(at);
+            }
         }
-        self.state.turn = next_turn;
+        self.state.turn = unreached.unwrap_or(0);
         outcomes.into_iter().flatten().collect()
+    }
+
+    fn register<P: StageProbe>(
+        &mut self,
+        scene: &Scene<'_>,
+        at: usize,
+        budget: &mut Budget,
+        probe: &mut P,
+    ) -> Vec<LandmarkOutcome> {
+        let (landmark, state) = (&self.set.landmarks[at], &mut self.state.landmarks[at]);
+        match scene.options.mode {
+            Mode::Faithful => faithful::landmark(scene, landmark, state, budget, &mut self.workspace, probe),
+            Mode::Adaptive => pursue::landmark(scene, landmark, state, budget, &mut self.tracer, probe),
+        }
     }
 }

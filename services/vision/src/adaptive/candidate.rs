@@ -52,6 +52,8 @@ pub(crate) struct Candidate {
     pub(crate) observed: ColorStats,
     /// Side of that window on the doubled grid.
     pub(crate) window_px: u16,
+    /// The likeness's tolerance over the descriptor's.
+    pub(crate) tolerance_scale: f32,
     /// Whether the picture's border cuts it.
     pub(crate) cut: bool,
     /// How much it looks like the landmark, 0..1.
@@ -187,7 +189,8 @@ fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Opti
     let score = choose::score(search, &object, form, area_px2, &observed);
     let cut = object.touches_border(search.frame.width(), search.frame.height());
     let gain = search.likeness.nearest(observed.mean).gain;
-    Some(Candidate { object, centroid, area_px2, gain, observed, window_px, cut, score })
+    let tolerance_scale = search.likeness.tolerance_scale(search.landmark);
+    Some(Candidate { object, centroid, area_px2, gain, observed, window_px, tolerance_scale, cut, score })
 }
 
 /// A sign's border: light and without a tint, wider on larger signs.

@@ -74,6 +74,13 @@ impl Likeness {
         Self { face, ..self.clone() }
     }
 
+    /// The widest channel's tolerance over the descriptor's.
+    pub(crate) fn tolerance_scale(&self, landmark: &Landmark) -> f32 {
+        let given = landmark.tolerance.mean;
+        let scale = |cone: &Cone| (0..3).map(|c| cone.tolerance[c] / given[c].max(1.0)).fold(0.0, f32::max);
+        self.cones.iter().map(scale).fold(0.0, f32::max)
+    }
+
     /// Whether a pixel may be the landmark's.
     pub(crate) fn matches(&self, pixel: [u8; 3]) -> bool {
         let color = pixel.map(f32::from);

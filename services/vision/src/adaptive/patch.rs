@@ -299,7 +299,7 @@ mod tests {
 
     #[test]
     fn the_part_with_the_seed_is_kept() {
-        let two = Patch::from_fn(RECT, |x, _| x < 3 || x > 8);
+        let two = Patch::from_fn(RECT, |x, _| !(3..=8).contains(&x));
         let seed = Patch::from_fn(RECT, |x, y| x == 10 && y == 4);
         assert_eq!(two.part_overlapping(&seed).unwrap().count(), 27);
     }

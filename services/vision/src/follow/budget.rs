@@ -10,12 +10,10 @@ impl Budget {
         Self { left_px: budget_px }
     }
 
-    pub(super) fn is_spent(&self) -> bool {
-        self.left_px == 0
-    }
-
-    /// Pays for a search of that many pixels.
-    pub(super) fn spend(&mut self, pixels: u64) {
+    /// Pays for a search of that many pixels; `None` when nothing is left to pay with.
+    pub(super) fn spend(&mut self, pixels: u64) -> Option<()> {
+        let affordable = self.left_px > 0;
         self.left_px = self.left_px.saturating_sub(pixels);
+        affordable.then_some(())
     }
 }

@@ -26,7 +26,9 @@ pub(super) fn landmark<P: StageProbe>(
     workspace: &mut Workspace,
     probe: &mut P,
 ) -> Vec<LandmarkOutcome> {
-    budget.spend(u64::from(scene.frame.width()) * u64::from(scene.frame.height()));
+    if budget.spend(u64::from(scene.frame.width()) * u64::from(scene.frame.height())).is_none() {
+        return vec![report::missed(landmark, 0, Miss::Skipped)];
+    }
     let request = Request { shape_veto: scene.options.shape_veto, ..Request::default() };
     let seen = register(scene.frame, landmark, &request, workspace, probe);
     let miss = seen.as_ref().err().copied().unwrap_or(Miss::NoColour { best: None });

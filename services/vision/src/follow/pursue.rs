@@ -2,10 +2,10 @@
 
 use super::budget::Budget;
 use super::state::{LandmarkState, Track};
-use super::{Scene, report};
-use crate::adaptive::{Candidate, Likeness, Search, candidates};
+use super::{Scene, reason, report};
+use crate::adaptive::{Candidate, Likeness, Tracer, candidates};
 use crate::gate::search_gate;
-use crate::geometry::RectPx;
+use crate::geometry::{PointPx, RectPx};
 use crate::landmark::Landmark;
 use crate::outcome::{Adaptation, Gate, LandmarkOutcome, Miss, Prediction, Sighting};
 use crate::predict::{Fix, Predictor};
@@ -27,8 +27,6 @@ const LOOK_ALIKE_PART: f32 = 0.6;
 const SEARCH_EVERY: u32 = 8;
 /// Seeds looked at closely in a gate and in the whole frame.
 const SEEDS: (usize, usize) = (4, 12);
-/// How fast gain and score are followed.
-const FOLLOW_RATE: f32 = 0.2;
 /// Further objects are given up after so many frames unseen; the last one never is.
 const GIVE_UP_AFTER: u32 = 45;
 
@@ -37,20 +35,16 @@ struct Pursuit {
     prediction: Prediction,
     gate: Gate,
     found: Option<Candidate>,
+    /// The best score of what was not taken for it.
+    rival: f32,
     full_frame: bool,
+    /// Where the nearest thing is that looks like it and cannot be it.
+    elsewhere: Option<PointPx>,
 }
 
 /// The outcome of a landmark that is not looked for in this frame.
-pub(super) fn skipped(landmark: &Landmark, state: &LandmarkState, scene: &Scene<'_>) -> Vec<LandmarkOutcome> {
-    let outcome = |instance: u32, prediction: Option<Prediction>| LandmarkOutcome {
-        prediction,
-        ..report::missed(landmark, instance, Miss::Skipped)
-    };
-    if state.tracks.is_empty() {
-        return vec![outcome(0, None)];
-    }
-    let of_track = |track: &Track| outcome(track.instance, Some(track.predictor.predict(scene.captured_at)));
-    state.tracks.iter().map(of_track).collect()
+pub(super) fn skipped(landmark: &Landmark, instance: u32) -> LandmarkOutcome {
+    report::missed(landmark, instance, Miss::Skipped)
 }
 
 /// Registers one landmark and updates what is known of it.
@@ -59,26 +53,37 @@ pub(super) fn landmark<P: StageProbe>(
     landmark: &Landmark,
     state: &mut LandmarkState,
     budget: &mut Budget,
+    tracer: &mut Tracer,
     probe: &mut P,
 ) -> Vec<LandmarkOutcome> {
-    probe.begin(Stage::Statistics);
+    probe.begin(Stage::Mask);
     let mut pursuits: Vec<Pursuit> = Vec::with_capacity(state.tracks.len());
     for track in &state.tracks {
         let pursuit = in_gate(scene, landmark, track, &pursuits, budget);
         pursuits.push(pursuit);
     }
-    state.frames_since_search += 1;
+    state.frames_since_search = state.frames_since_search.saturating_add(1);
     let lost = pursuits.iter().any(|pursuit| pursuit.found.is_none());
-    let mut further = Vec::new();
-    if pursuits.is_empty() || lost || state.frames_since_search >= SEARCH_EVERY {
-        state.frames_since_search = 0;
-        further = anywhere(scene, landmark, state, budget);
-        for (track, pursuit) in state.tracks.iter().zip(&mut pursuits) {
-            reacquire(track, pursuit, &mut further);
+    let wanted = pursuits.is_empty() || lost || state.frames_since_search >= SEARCH_EVERY;
+    let further = if wanted { anywhere(scene, landmark, state, budget) } else { Some(Vec::new()) };
+    probe.end(Stage::Mask);
+    let Some(mut further) = further else {
+        if pursuits.is_empty() {
+            return vec![skipped(landmark, 0)];
         }
+        return staged(probe, || conclude(scene, landmark, state, pursuits, Vec::new(), tracer));
+    };
+    for (track, pursuit) in state.tracks.iter().zip(&mut pursuits) {
+        reacquire(track, pursuit, &mut further);
     }
-    probe.end(Stage::Statistics);
-    conclude(scene, landmark, state, pursuits, further)
+    staged(probe, || conclude(scene, landmark, state, pursuits, further, tracer))
+}
+
+fn staged<P: StageProbe, T>(probe: &mut P, work: impl FnOnce() -> T) -> T {
+    probe.begin(Stage::Shape);
+    let result = work();
+    probe.end(Stage::Shape);
+    result
 }
 
 /// Looks for a followed object where it should be.
@@ -91,30 +96,22 @@ fn in_gate(
 ) -> Pursuit {
     let prediction = track.predictor.predict(scene.captured_at);
     let gate = search_gate(&prediction);
-    let mut pursuit = Pursuit { prediction, gate, found: None, full_frame: false };
+    let mut pursuit =
+        Pursuit { prediction, gate, found: None, rival: 0.0, full_frame: false, elsewhere: None };
     let Some(region) = gate.bounds(scene.frame.size()) else { return pursuit };
-    budget.spend(u64::from(region.width) * u64::from(region.height));
+    if budget.spend(u64::from(region.width) * u64::from(region.height)).is_none() {
+        return pursuit;
+    }
     let likeness = Likeness::followed(landmark, track.gain, scene.noise_variance);
-    let search = Search {
-        frame: scene.frame,
-        region,
-        landmark,
-        likeness: &likeness,
-        gain: track.gain,
-        noise_variance: scene.noise_variance,
-        limit: SEEDS.0,
-    };
+    let mut seen = candidates(&scene.search(landmark, region, &likeness, track.gain, SEEDS.0));
     let taken = |candidate: &Candidate| {
         others.iter().filter_map(|other| other.found.as_ref()).any(|found| found.covers(candidate.centroid))
     };
-    let believed = |candidate: &Candidate| {
-        gate.contains(candidate.centroid)
-            && candidate.score * consistency(&prediction, candidate) >= FOLLOWED_PART * track.score
-            && !taken(candidate)
-    };
     let merit = |candidate: &Candidate| candidate.score * consistency(&prediction, candidate);
-    pursuit.found =
-        candidates(&search).into_iter().filter(believed).max_by(|a, b| merit(a).total_cmp(&merit(b)));
+    seen.retain(|candidate| gate.contains(candidate.centroid) && !taken(candidate));
+    seen.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+    pursuit.rival = seen.get(1).map_or(0.0, merit);
+    pursuit.found = seen.into_iter().next().filter(|best| merit(best) >= FOLLOWED_PART * track.score);
     pursuit
 }
 
@@ -129,26 +126,19 @@ fn consistency(prediction: &Prediction, candidate: &Candidate) -> f32 {
     (-0.5 * (off / 1.5).powi(2) - 0.5 * (size / 0.5).powi(2)).exp()
 }
 
-/// Objects that look like the landmark in the whole frame.
+/// Objects that look like the landmark in the whole frame; `None` when the budget does not allow the search.
 fn anywhere(
     scene: &Scene<'_>,
     landmark: &Landmark,
-    state: &LandmarkState,
+    state: &mut LandmarkState,
     budget: &mut Budget,
-) -> Vec<Candidate> {
+) -> Option<Vec<Candidate>> {
     let region = RectPx::whole(scene.frame.size());
-    budget.spend(u64::from(region.width) * u64::from(region.height));
+    budget.spend(u64::from(region.width) * u64::from(region.height))?;
+    state.frames_since_search = 0;
     let gain = state.tracks.first().map_or(1.0, |track| track.gain);
     let likeness = Likeness::anywhere(landmark, gain, scene.noise_variance);
-    candidates(&Search {
-        frame: scene.frame,
-        region,
-        landmark,
-        likeness: &likeness,
-        gain,
-        noise_variance: scene.noise_variance,
-        limit: SEEDS.1,
-    })
+    Some(candidates(&scene.search(landmark, region, &likeness, gain, SEEDS.1)))
 }
 
 /// Takes up a lost object where the whole frame shows one that can be it.
@@ -171,8 +161,14 @@ fn reacquire(track: &Track, pursuit: &mut Pursuit, further: &mut Vec<Candidate>)
             && candidate.score >= 0.6 * track.score
     };
     if let Some(at) = further.iter().position(possible) {
-        pursuit.found = Some(further.swap_remove(at));
+        pursuit.found = Some(further.remove(at));
         pursuit.full_frame = true;
+        pursuit.rival = further.first().map_or(0.0, |next| next.score);
+    } else {
+        let alike = further.iter().filter(|candidate| candidate.score >= 0.6 * track.score);
+        let off_px = |candidate: &&Candidate| pursuit.prediction.centroid.distance_px(candidate.centroid);
+        let nearest = alike.min_by(|a, b| off_px(a).total_cmp(&off_px(b)));
+        pursuit.elsewhere = nearest.map(|candidate| candidate.centroid);
     }
 }
 
@@ -183,30 +179,50 @@ fn conclude(
     state: &mut LandmarkState,
     pursuits: Vec<Pursuit>,
     further: Vec<Candidate>,
+    tracer: &mut Tracer,
 ) -> Vec<LandmarkOutcome> {
     let mut outcomes = Vec::new();
     let mut best_score = 0.0_f32;
     for (track, pursuit) in state.tracks.iter_mut().zip(pursuits) {
         best_score = best_score.max(pursuit.found.as_ref().map_or(0.0, |found| found.score));
-        outcomes.push(advance(scene, landmark, track, pursuit));
+        outcomes.push(advance(scene, landmark, track, pursuit, tracer));
     }
-    let usual = usual_look(state);
-    let mut least_score = if state.tracks.is_empty() { FIRST_SCORE } else { FURTHER_SCORE };
-    for candidate in further {
-        let full = state.tracks.len() >= scene.options.max_instances as usize;
-        let least = least_score.max(FURTHER_PART * best_score.max(usual.score));
-        if candidate.score < least || candidate.area_px2 < FURTHER_SIZE * usual.area_px2 || full {
-            continue;
-        }
-        best_score = best_score.max(candidate.score);
-        least_score = FURTHER_SCORE;
-        outcomes.push(begin(scene, landmark, state, &candidate));
-    }
+    welcome(scene, landmark, state, further, best_score, tracer, &mut outcomes);
     forget(state);
     if outcomes.is_empty() {
         outcomes.push(report::missed(landmark, 0, Miss::NoColour { best: None }));
     }
     outcomes
+}
+
+/// Takes up objects that were not known before.
+fn welcome(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    state: &mut LandmarkState,
+    further: Vec<Candidate>,
+    mut best_score: f32,
+    tracer: &mut Tracer,
+    outcomes: &mut Vec<LandmarkOutcome>,
+) {
+    let usual = usual_look(state);
+    let mut least_score = if state.tracks.is_empty() { FIRST_SCORE } else { FURTHER_SCORE };
+    let mut next = further.into_iter().peekable();
+    while let Some(candidate) = next.next() {
+        let least = least_score.max(FURTHER_PART * best_score.max(usual.score));
+        if candidate.score < least || candidate.area_px2 < FURTHER_SIZE * usual.area_px2 {
+            continue;
+        }
+        if state.tracks.len() >= scene.options.max_instances as usize {
+            outcomes.push(skipped(landmark, state.next_instance));
+            break;
+        }
+        let rival = next.peek().map_or(0.0, |next| next.score);
+        let outcome = begin(scene, landmark, state, &candidate, rival, tracer);
+        best_score = best_score.max(candidate.score);
+        least_score = FURTHER_SCORE;
+        outcomes.push(outcome);
+    }
 }
 
 /// What the objects of a landmark that are known look like: a further one must not be much less.
@@ -231,31 +247,35 @@ fn forget(state: &mut LandmarkState) {
     });
 }
 
-fn advance(scene: &Scene<'_>, landmark: &Landmark, track: &mut Track, pursuit: Pursuit) -> LandmarkOutcome {
-    let Pursuit { prediction, gate, found, full_frame } = pursuit;
-    let known = |outcome: LandmarkOutcome| LandmarkOutcome {
-        prediction: Some(prediction),
-        gate: Some(gate),
-        ..outcome
+fn advance(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    track: &mut Track,
+    pursuit: Pursuit,
+    tracer: &mut Tracer,
+) -> LandmarkOutcome {
+    let Pursuit { prediction, gate, found, rival, full_frame, elsewhere } = pursuit;
+    let outcome = match found.map(|found| (describe(scene, landmark, &found, rival, tracer), found)) {
+        Some((Ok(sighting), found)) => {
+            track.follow(&found, fix(scene, &found));
+            LandmarkOutcome {
+                innovation_px: Some(prediction.centroid.distance_px(found.centroid)),
+                adaptation: Some(adaptation(scene, &found, full_frame)),
+                ..report::measured(landmark, track.instance, sighting)
+            }
+        }
+        Some((Err(miss), _)) => {
+            track.misses = track.misses.saturating_add(1);
+            report::missed(landmark, track.instance, miss)
+        }
+        None => {
+            track.misses = track.misses.saturating_add(1);
+            let likeness = Likeness::followed(landmark, track.gain, scene.noise_variance);
+            let miss = reason::of_miss(scene, track, &likeness, &prediction, &gate, elsewhere);
+            report::missed(landmark, track.instance, miss)
+        }
     };
-    let Some(found) = found else {
-        track.misses += 1;
-        let reason = if gate.bounds(scene.frame.size()).is_none() {
-            Miss::OutsideFrame
-        } else {
-            Miss::NoColour { best: None }
-        };
-        return known(report::missed(landmark, track.instance, reason));
-    };
-    track.misses = 0;
-    track.sightings += 1;
-    track.gain += FOLLOW_RATE * (found.gain - track.gain);
-    track.score += FOLLOW_RATE * (found.score - track.score);
-    track.predictor.update(fix(scene, &found));
-    LandmarkOutcome {
-        innovation_px: Some(prediction.centroid.distance_px(found.centroid)),
-        ..known(measured(scene, landmark, track.instance, &found, full_frame))
-    }
+    LandmarkOutcome { prediction: Some(prediction), gate: Some(gate), ..outcome }
 }
 
 fn begin(
@@ -263,39 +283,59 @@ fn begin(
     landmark: &Landmark,
     state: &mut LandmarkState,
     found: &Candidate,
+    rival: f32,
+    tracer: &mut Tracer,
 ) -> LandmarkOutcome {
+    let sighting = match describe(scene, landmark, found, rival, tracer) {
+        Ok(sighting) => sighting,
+        Err(miss) => return report::missed(landmark, state.next_instance, miss),
+    };
     let predictor = Predictor::new(scene.options.prediction, fix(scene, found));
     let instance = state.begin(predictor, found.gain, found.score).instance;
-    measured(scene, landmark, instance, found, true)
+    LandmarkOutcome {
+        adaptation: Some(adaptation(scene, found, true)),
+        ..report::measured(landmark, instance, sighting)
+    }
 }
 
 fn fix(scene: &Scene<'_>, found: &Candidate) -> Fix {
     Fix { captured_at: scene.captured_at, centroid: found.centroid, area_px2: found.area_px2 }
 }
 
-fn measured(
+/// All that is reported of an object.
+///
+/// # Errors
+/// When its outline is of another shape and that was asked to rule it out.
+fn describe(
     scene: &Scene<'_>,
     landmark: &Landmark,
-    instance: u32,
     found: &Candidate,
-    full_frame: bool,
-) -> LandmarkOutcome {
-    let sighting = Sighting {
+    rival: f32,
+    tracer: &mut Tracer,
+) -> Result<Sighting, Miss> {
+    let traced = tracer.trace(&found.object, landmark.shape);
+    if scene.options.shape_veto.rules_out(traced.shape_score) {
+        return Err(Miss::WrongShape { score: traced.shape_score.unwrap_or(0.0) });
+    }
+    Ok(Sighting {
         centroid: found.centroid,
         area_px2: found.area_px2,
-        mask_area_2x: 4.0 * found.area_px2,
-        outline: found.object.hull(),
+        mask_area_2x: traced.mask_area_2x,
+        outline: traced.outline,
+        segments: traced.segments,
+        shape_score: traced.shape_score,
         observed: found.observed,
         score: found.score,
-        distinctness: 1.0,
-        ..Sighting::default()
-    };
-    let adaptation = Adaptation {
+        distinctness: (1.0 - rival / found.score.max(1e-3)).clamp(0.0, 1.0),
+    })
+}
+
+fn adaptation(scene: &Scene<'_>, found: &Candidate, full_frame: bool) -> Adaptation {
+    Adaptation {
         gain: found.gain,
         noise_variance: scene.noise_variance,
         window_px: found.window_px,
-        tolerance_scale: 1.0,
+        tolerance_scale: found.tolerance_scale,
         full_frame,
-    };
-    LandmarkOutcome { adaptation: Some(adaptation), ..report::measured(landmark, instance, sighting) }
+    }
 }

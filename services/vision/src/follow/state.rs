@@ -1,8 +1,12 @@
 //! All that the outcome of later frames depends on: plain data.
 
 use super::FrameStamp;
+use crate::adaptive::Candidate;
 use crate::landmark::{Digest, Landmark};
-use crate::predict::Predictor;
+use crate::predict::{Fix, Predictor};
+
+/// How fast gain and score are followed.
+const FOLLOW_RATE: f32 = 0.2;
 
 /// The state of a [`Follow`](super::Follow) between two frames.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,5 +65,16 @@ impl LandmarkState {
         self.next_instance += 1;
         self.tracks.push(Track { instance, predictor, gain, score, sightings: 1, misses: 0 });
         &self.tracks[self.tracks.len() - 1]
+    }
+}
+
+impl Track {
+    /// Takes a sighting into account.
+    pub(super) fn follow(&mut self, found: &Candidate, fix: Fix) {
+        self.misses = 0;
+        self.sightings = self.sightings.saturating_add(1);
+        self.gain += FOLLOW_RATE * (found.gain - self.gain);
+        self.score += FOLLOW_RATE * (found.score - self.score);
+        self.predictor.update(fix);
     }
 }
