@@ -290,7 +290,7 @@ fn reach_of(outline: &Outline, at: usize) -> Reach {
 
 /// The straight line that fits a piece of border best (total least squares), between the feet of its end pixels.
 fn fitted(outline: &Outline, first: usize, span: usize, votes: u32) -> OutlineSegment {
-    let pixels = (0..span).map(|ahead| {
+    let mut pixels = (0..span).map(|ahead| {
         let (x, y) = outline.pixel_after(first, ahead as isize);
         (f64::from(x), f64::from(y))
     });
@@ -306,38 +306,17 @@ fn fitted(outline: &Outline, first: usize, span: usize, votes: u32) -> OutlineSe
         (mean.0 + along * cos, mean.1 + along * sin)
     };
     let end = |pixel: Option<(f64, f64)>| foot(pixel.unwrap_or(mean));
-    OutlineSegment { from: end(pixels.clone().next()), to: end(pixels.last()), first, span, votes }
+    OutlineSegment { from: end(pixels.next()), to: end(pixels.next_back()), first, span, votes }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bitmask::BitMask;
-    use crate::components::Components;
-
-    /// A polygon of `sides` sides with this circumradius, turned by `turn_rad`, filled.
-    fn polygon(sides: u32, radius: f64, turn_rad: f64) -> BitMask {
-        let mut mask = BitMask::new(200, 200);
-        let step = 2.0 * PI / f64::from(sides);
-        for (x, y) in (0..200).flat_map(|y| (0..200).map(move |x| (x, y))) {
-            let (dx, dy) = (f64::from(x) - 99.6, f64::from(y) - 99.3);
-            let inside = (0..sides).all(|side| {
-                let normal = turn_rad + f64::from(side) * step;
-                dx * normal.cos() + dy * normal.sin() <= radius * (step / 2.0).cos()
-            });
-            if inside {
-                mask.set(x, y);
-            }
-        }
-        mask
-    }
+    use crate::drawn::{outline, polygon};
 
     fn segments(mask: &BitMask) -> Vec<OutlineSegment> {
-        let mut components = Components::default();
-        components.find(mask);
-        let mut outline = Outline::default();
-        outline.trace(mask, components.runs(&components.list()[0])[0]);
-        Hough::default().segments(&outline).to_vec()
+        Hough::default().segments(&outline(mask)).to_vec()
     }
 
     #[test]

@@ -15,6 +15,8 @@ pub mod bitmask;
 pub mod components;
 mod adaptive;
 pub mod doubled_grid;
+#[cfg(test)]
+mod drawn;
 pub mod follow;
 pub mod frame;
 pub mod gate;

@@ -100,10 +100,12 @@ impl Masker {
     fn test_areas(&mut self, frame: &Frame, grid: &DoubledGrid, mask: &mut BitMask) {
         let question = Question { frame, grid, accepted: &self.accepted };
         for area in &self.areas {
-            match grid.samples() {
-                ..=NARROW_SAMPLES => self.lanes.test_exactly(&question, area, &mut self.narrow, mask),
-                ..=MEDIUM_SAMPLES => self.lanes.test_exactly(&question, area, &mut self.medium, mask),
-                _ => self.lanes.test_exactly(&question, area, &mut self.wide, mask),
+            if grid.samples() <= NARROW_SAMPLES {
+                self.lanes.test_exactly(&question, area, &mut self.narrow, mask);
+            } else if grid.samples() <= MEDIUM_SAMPLES {
+                self.lanes.test_exactly(&question, area, &mut self.medium, mask);
+            } else {
+                self.lanes.test_exactly(&question, area, &mut self.wide, mask);
             }
         }
     }

@@ -113,16 +113,34 @@ fn grown_outline(grid: &DoubledGrid, outline: &Outline) -> Vec<PointPx> {
 
 /// The furthest border pixel that a line from number `from` reaches without leaving those between behind; the number of
 /// pixels where that is the end.
+///
+/// Every pixel passed narrows the cone of directions that stay near it (Williams 1978); the first pixel outside the cone
+/// ends the line.
 fn straight_until(pixels: &[(i32, i32)], from: usize) -> usize {
-    let near = |end: usize| {
-        let (ax, ay) = (f64::from(pixels[from].0), f64::from(pixels[from].1));
-        let (dx, dy) = (f64::from(pixels[end].0) - ax, f64::from(pixels[end].1) - ay);
-        let length = dx.hypot(dy).max(f64::EPSILON);
-        pixels[from + 1..end].iter().all(|&(x, y)| {
-            ((f64::from(x) - ax) * dy - (f64::from(y) - ay) * dx).abs() / length <= OUTLINE_TOLERANCE
-        })
-    };
-    (from + 2..pixels.len()).find(|&end| !near(end)).map_or(pixels.len(), |end| end - 1)
+    let origin = pixels[from];
+    let mut cone: Option<((f64, f64), (f64, f64))> = None;
+    for (end, &(x, y)) in pixels.iter().enumerate().skip(from + 1) {
+        let to = (f64::from(x - origin.0), f64::from(y - origin.1));
+        if cone.is_some_and(|(left, right)| cross(left, to) < 0.0 || cross(to, right) < 0.0) {
+            return end - 1;
+        }
+        let distance = to.0.hypot(to.1);
+        if distance <= OUTLINE_TOLERANCE {
+            continue;
+        }
+        let aside = (-to.1 * OUTLINE_TOLERANCE / distance, to.0 * OUTLINE_TOLERANCE / distance);
+        let (left, right) = ((to.0 - aside.0, to.1 - aside.1), (to.0 + aside.0, to.1 + aside.1));
+        cone = Some(cone.map_or((left, right), |(narrow_left, narrow_right)| {
+            let left = if cross(narrow_left, left) > 0.0 { left } else { narrow_left };
+            let right = if cross(right, narrow_right) > 0.0 { right } else { narrow_right };
+            (left, right)
+        }));
+    }
+    pixels.len()
+}
+
+fn cross(a: (f64, f64), b: (f64, f64)) -> f64 {
+    a.0 * b.1 - a.1 * b.0
 }
 
 fn grown_segment(grid: &DoubledGrid, segment: &OutlineSegment) -> Segment {

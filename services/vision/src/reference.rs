@@ -34,9 +34,9 @@ pub fn mask(frame: &Frame, region: RectPx, landmark: &Landmark) -> Option<BitMas
             let mut sums = WindowSums { samples, ..WindowSums::default() };
             for row in &doubled[y as usize..][..window_height as usize] {
                 for pixel in &row[x as usize..][..window_width as usize] {
-                    for channel in 0..3 {
-                        sums.sum[channel] += u64::from(pixel[channel]);
-                        sums.sum_of_squares[channel] += u64::from(pixel[channel]).pow(2);
+                    for (channel, &level) in pixel.iter().enumerate() {
+                        sums.sum[channel] += u64::from(level);
+                        sums.sum_of_squares[channel] += u64::from(level).pow(2);
                     }
                 }
             }

@@ -122,25 +122,58 @@ fn fit_turned(polygon: &Polygon, turn: f64, segments: &[OutlineSegment], perimet
 
 /// 1 for an ellipse, 0 where distances from the ellipse of inertia spread by [`CIRCLE_TOLERANCE`].
 fn roundness(outline: &Outline) -> f64 {
+    let Some(inertia) = Inertia::of(outline) else { return 0.0 };
     let count = outline.pixels().len() as f64;
-    let points = || outline.pixels().iter().map(|&(x, y)| (f64::from(x), f64::from(y)));
-    let mean = points().fold((0.0, 0.0), |mean, (x, y)| (mean.0 + x / count, mean.1 + y / count));
-    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-    for (x, y) in points().map(|(x, y)| (x - mean.0, y - mean.1)) {
-        (xx, xy, yy) = (xx + x * x / count, xy + x * y / count, yy + y * y / count);
+    let radii = || outline.pixels().iter().map(|&pixel| inertia.radius(pixel));
+    let mean = radii().sum::<f64>() / count;
+    let spread = (radii().map(|radius| (radius - mean).powi(2)).sum::<f64>() / count).sqrt();
+    1.0 - spread / mean / CIRCLE_TOLERANCE
+}
+
+/// Middle and covariance of the area inside an outline.
+struct Inertia {
+    middle: (f64, f64),
+    xx: f64,
+    xy: f64,
+    yy: f64,
+}
+
+impl Inertia {
+    /// By Green's theorem on the closed line through the border pixels; `None` where it encloses nothing.
+    fn of(outline: &Outline) -> Option<Self> {
+        let (mut area, mut x, mut y, mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        let origin = outline.pixels()[0];
+        let from_origin = |pixel: (i32, i32)| (f64::from(pixel.0 - origin.0), f64::from(pixel.1 - origin.1));
+        for at in 0..outline.pixels().len() {
+            let ((ax, ay), (bx, by)) =
+                (from_origin(outline.pixel_after(at, 0)), from_origin(outline.pixel_after(at, 1)));
+            let cross = ax * by - ay * bx;
+            area += cross / 2.0;
+            x += (ax + bx) * cross / 6.0;
+            y += (ay + by) * cross / 6.0;
+            xx += (ax * ax + ax * bx + bx * bx) * cross / 12.0;
+            yy += (ay * ay + ay * by + by * by) * cross / 12.0;
+            xy += (ax * by + 2.0 * ax * ay + 2.0 * bx * by + bx * ay) * cross / 24.0;
+        }
+        let (x, y) = (x / area, y / area);
+        let inertia = Self {
+            middle: (x + f64::from(origin.0), y + f64::from(origin.1)),
+            xx: xx / area - x * x,
+            xy: xy / area - x * y,
+            yy: yy / area - y * y,
+        };
+        (area.abs() > 0.0 && inertia.determinant() > 0.0).then_some(inertia)
     }
-    let determinant = xx * yy - xy * xy;
-    if determinant <= 0.0 {
-        return 0.0;
+
+    fn determinant(&self) -> f64 {
+        self.xx * self.yy - self.xy * self.xy
     }
-    // The Mahalanobis distance of every point of an ellipse from its middle is the same, √2.
-    let radius = |(x, y): (f64, f64)| {
-        let (x, y) = (x - mean.0, y - mean.1);
-        ((yy * x * x - 2.0 * xy * x * y + xx * y * y) / determinant).sqrt()
-    };
-    let mean_radius = points().map(radius).sum::<f64>() / count;
-    let spread = (points().map(|point| (radius(point) - mean_radius).powi(2)).sum::<f64>() / count).sqrt();
-    1.0 - spread / mean_radius / CIRCLE_TOLERANCE
+
+    /// Distance from the middle in standard deviations (Mahalanobis): the same for all points of an ellipse.
+    fn radius(&self, pixel: (i32, i32)) -> f64 {
+        let (x, y) = (f64::from(pixel.0) - self.middle.0, f64::from(pixel.1) - self.middle.1);
+        ((self.yy * x * x - 2.0 * self.xy * x * y + self.xx * y * y) / self.determinant()).sqrt()
+    }
 }
 
 fn vector(segment: &OutlineSegment) -> (f64, f64) {
@@ -149,4 +182,67 @@ fn vector(segment: &OutlineSegment) -> (f64, f64) {
 
 fn distance(a: (f64, f64), b: (f64, f64)) -> f64 {
     (a.0 - b.0).hypot(a.1 - b.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bitmask::BitMask;
+    use crate::drawn::{ellipse, outline, polygon, rectangle};
+    use crate::hough::Hough;
+
+    fn fit_of(class: ShapeClass, mask: &BitMask) -> Option<f32> {
+        let outline = outline(mask);
+        fit(class, &outline, Hough::default().segments(&outline))
+    }
+
+    fn turns() -> impl Iterator<Item = f64> {
+        (0..12).map(|turn| f64::from(turn) * 0.137)
+    }
+
+    /// Every figure at every turn fits its own class, and the others do not.
+    fn check(class: ShapeClass, own: &dyn Fn(f64) -> BitMask, foreign: &dyn Fn(f64) -> BitMask) {
+        for turn in turns() {
+            let (own, foreign) = (fit_of(class, &own(turn)).unwrap(), fit_of(class, &foreign(turn)).unwrap());
+            assert!(own >= 0.6, "{} at {turn}: own fit {own}", class.name());
+            assert!(foreign < SMALLEST_FIT, "{} at {turn}: foreign fit {foreign}", class.name());
+        }
+    }
+
+    #[test]
+    fn a_block_has_perpendicular_sides_that_meet() {
+        check(ShapeClass::Block, &|turn| rectangle(30.0, 24.0, turn), &|turn| polygon(3, 45.0, turn));
+        check(ShapeClass::Block, &|turn| rectangle(12.0, 12.0, turn), &|_| ellipse(40.0, 37.0));
+        check(ShapeClass::Block, &|turn| rectangle(60.0, 20.0, turn), &|turn| polygon(8, 60.0, turn));
+    }
+
+    #[test]
+    fn a_rectangle_has_two_parallel_pairs() {
+        check(ShapeClass::Rectangle, &|turn| rectangle(60.0, 20.0, turn), &|turn| polygon(3, 60.0, turn));
+        check(ShapeClass::Rectangle, &|turn| rectangle(25.0, 25.0, turn), &|_| ellipse(40.0, 40.0));
+    }
+
+    #[test]
+    fn an_octagon_has_eight_sides() {
+        check(ShapeClass::Octagon, &|turn| polygon(8, 45.0, turn), &|turn| rectangle(40.0, 40.0, turn));
+        check(ShapeClass::Octagon, &|turn| polygon(8, 80.0, turn), &|turn| polygon(3, 60.0, turn));
+    }
+
+    #[test]
+    fn a_triangle_has_three_sides() {
+        check(ShapeClass::Triangle, &|turn| polygon(3, 50.0, turn), &|turn| rectangle(40.0, 40.0, turn));
+        check(ShapeClass::Triangle, &|turn| polygon(3, 30.0, turn), &|turn| polygon(8, 50.0, turn));
+    }
+
+    #[test]
+    fn a_circle_may_be_foreshortened() {
+        check(ShapeClass::Circle, &|_| ellipse(40.0, 40.0), &|turn| rectangle(40.0, 40.0, turn));
+        check(ShapeClass::Circle, &|_| ellipse(50.0, 35.0), &|turn| polygon(3, 50.0, turn));
+    }
+
+    #[test]
+    fn what_is_too_small_or_of_any_shape_has_no_fit() {
+        assert_eq!(fit_of(ShapeClass::Block, &rectangle(2.0, 2.0, 0.0)), None);
+        assert_eq!(fit_of(ShapeClass::Any, &rectangle(30.0, 30.0, 0.0)), None);
+    }
 }

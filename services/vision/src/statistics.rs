@@ -68,7 +68,7 @@ pub struct Bounds<T> {
     pub high: T,
 }
 
-impl<T: PartialOrd> Bounds<T> {
+impl<T: PartialOrd + Copy> Bounds<T> {
     /// Whether `value` is accepted.
     #[must_use]
     pub fn accept(&self, value: T) -> bool {

@@ -17,6 +17,8 @@ use super::lane::Lane;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Powers<T> {
     levels: Vec<Vec<T>>,
+    /// B.
+    lesser: Vec<T>,
     /// Columns, in whole chunks, that every level covers; what lies beyond is arbitrary.
     covered: usize,
     half: usize,
@@ -37,6 +39,7 @@ impl<T: Lane> Powers<T> {
         for level in &mut self.levels {
             fit(level, self.covered + self.half + WIDTH);
         }
+        fit(&mut self.lesser, self.covered);
     }
 
     /// The column sums, to be set.
@@ -51,7 +54,7 @@ impl<T: Lane> Powers<T> {
         let mut length = 1;
         for level in 1..self.levels.len() {
             if 2 * length > self.half {
-                return;
+                break;
             }
             let (lower, upper) = self.levels.split_at_mut(level);
             let (below, this) = (&lower[level - 1], &mut upper[0]);
@@ -60,24 +63,34 @@ impl<T: Lane> Powers<T> {
             }
             length *= 2;
         }
+        self.sum_lesser();
+    }
+
+    /// B from the levels whose bit is set in m: the first one's sums, then the others' behind it.
+    #[inline(always)]
+    fn sum_lesser(&mut self) {
+        let lesser = &mut self.lesser[..self.covered];
+        let mut from = 0;
+        for (level, sums) in self.levels.iter().enumerate().filter(|(level, _)| self.half & 1 << level != 0) {
+            for x in (0..lesser.len()).step_by(WIDTH) {
+                let part = load(sums, from + x);
+                store(lesser, x, if from == 0 { part } else { add(load(lesser, x), part) });
+            }
+            from += 1 << level;
+        }
+        if self.half == 0 {
+            lesser.fill(T::default());
+        }
     }
 
     /// Sums of the windows that start at the 32 columns from `x`: on their first sample, and on their second.
     #[inline(always)]
     pub(super) fn windows(&self, x: usize) -> [Chunk<T>; 2] {
-        let mut lesser = [T::default(); WIDTH];
-        let mut from = x;
-        for (level, sums) in self.levels.iter().enumerate() {
-            if self.half & 1 << level != 0 {
-                lesser = add(lesser, load(sums, from));
-                from += 1 << level;
-            }
-        }
+        let lesser = load(&self.lesser, x);
         let first_column = load(&self.levels[0], x);
-        let next_column = load(&self.levels[0], from);
+        let next_column = load(&self.levels[0], x + self.half);
         let odd = self.odd;
-        let twice = add(lesser, lesser);
-        let on_first = join(twice, next_column, |sum, next| sum.plus(odd.times(next)));
+        let on_first = join(add(lesser, lesser), next_column, |sum, next| sum.plus(odd.times(next)));
         let on_second = join(join(on_first, next_column, T::plus), first_column, T::minus);
         [on_first, on_second]
     }

@@ -1,0 +1,92 @@
+//! Frames like those of the thesis's rink, the same ones in every run.
+
+use vision::{ColorStats, Digest, Frame, Landmark, ShapeClass, SizePx, WindowPx};
+
+/// Frame sizes that cameras deliver.
+pub(crate) const SIZES: [SizePx; 3] = [
+    SizePx { width: 640, height: 480 },
+    SizePx { width: 1280, height: 720 },
+    SizePx { width: 1920, height: 1080 },
+];
+
+const RED: [i32; 3] = [202, 71, 33];
+const BLUE: [i32; 3] = [51, 60, 82];
+const BLACK: [i32; 3] = [38, 36, 40];
+const FLOORS: [[i32; 3]; 3] = [[176, 168, 152], [150, 158, 165], [186, 180, 172]];
+const WALL: [i32; 3] = [58, 52, 50];
+
+/// Floors of three surfaces, a dark wall above them, and three blocks of a thirteenth of the frame's height.
+pub(crate) fn rink(size: SizePx) -> Frame {
+    let mut noise = Noise(0x9E37_79B9_7F4A_7C15);
+    let side = size.height / 13;
+    let mut rgb = Vec::with_capacity(3 * (size.width * size.height) as usize);
+    for (y, x) in (0..size.height).flat_map(|y| (0..size.width).map(move |x| (y, x))) {
+        let block = |colour, left: u32, top: u32| {
+            ((left..left + side).contains(&x) && (top..top + side).contains(&y)).then_some(colour)
+        };
+        let colour = block(RED, size.width * 7 / 10, size.height * 13 / 20)
+            .or(block(BLUE, size.width * 3 / 10, size.height * 2 / 3))
+            .or(block(BLACK, size.width / 2, size.height * 3 / 5))
+            .unwrap_or(if y < size.height / 4 { WALL } else { FLOORS[(3 * x / size.width) as usize % 3] });
+        rgb.extend(colour.map(|level| (level + noise.next()).clamp(0, 255) as u8));
+    }
+    Frame::from_rgb(size.width, size.height, rgb).unwrap()
+}
+
+/// One colour and nothing else.
+pub(crate) fn flat(size: SizePx) -> Frame {
+    let pixels = (size.width * size.height) as usize;
+    Frame::from_rgb(size.width, size.height, [202, 71, 33].repeat(pixels)).unwrap()
+}
+
+/// A landmark of these levels, window side and tolerances.
+pub(crate) fn landmark(mean: [f32; 3], side: u16, tolerance: ColorStats) -> Landmark {
+    Landmark {
+        id: "bench".into(),
+        revision: 1,
+        window_px: WindowPx::square(side),
+        shades: vec![ColorStats { mean, variance: [30.0; 3] }],
+        tolerance,
+        shape: ShapeClass::Block,
+        size_m: None,
+        digest: Digest::default(),
+    }
+}
+
+/// The red block, tolerances of Table D.1.
+pub(crate) fn red(side: u16) -> Landmark {
+    landmark(RED.map(|level| level as f32), side, ColorStats::uniform(15.0, 50.0))
+}
+
+/// What landmarks may meet, from nothing to everything.
+pub(crate) fn contents(size: SizePx) -> [(&'static str, Frame, Landmark); 5] {
+    let floor = FLOORS[1].map(|level| level as f32);
+    [
+        ("match", rink(size), red(12)),
+        ("nothing", rink(size), landmark([10.0, 240.0, 10.0], 12, ColorStats::uniform(15.0, 50.0))),
+        ("loose", rink(size), landmark([202.0, 71.0, 33.0], 12, ColorStats::uniform(40.0, 150.0))),
+        ("background", rink(size), landmark(floor, 12, ColorStats::uniform(15.0, 50.0))),
+        ("everything", flat(size), red(12)),
+    ]
+}
+
+/// Landmarks of colours spread over the cube.
+pub(crate) fn distinct(count: u32) -> Vec<Landmark> {
+    let level = |number: u32, step: u32| (250 - 60 * (number / step % 4)) as f32;
+    (0..count)
+        .map(|number| {
+            let mean = [level(number, 1), level(number, 4), level(number, 16)];
+            landmark(mean, 12, ColorStats::uniform(15.0, 50.0))
+        })
+        .collect()
+}
+
+/// The sum of three small random numbers, ±12: near enough to a camera's noise.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> i32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (0..3).map(|draw| (self.0 >> (40 + 8 * draw)) as i32 % 9 - 4).sum()
+    }
+}
