@@ -158,7 +158,7 @@ pub fn decode(bytes: &[u8], limits: &DecodeLimits) -> Result<Frame, DecodeError>
 pub fn decode_into(bytes: &[u8], limits: &DecodeLimits, storage: Vec<u8>) -> Result<Frame, DecodeError> {
     match sniff(bytes) {
         Some(PictureFormat::Jpeg) => jpeg::decode(bytes, limits, storage),
-        Some(PictureFormat::Png) => png::decode(bytes, limits, storage),
+        Some(PictureFormat::Png) => png::decode(bytes, limits),
         _ => Err(DecodeError::UnknownFormat { start: bytes[..bytes.len().min(8)].to_vec() }),
     }
 }

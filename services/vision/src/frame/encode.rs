@@ -1,5 +1,7 @@
 //! From a [`Frame`] to JPEG or PNG bytes.
 
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
 use jpeg_encoder::{ColorType, Encoder};
 
 use super::Frame;
@@ -57,7 +59,7 @@ pub enum EncodeError {
     Jpeg(#[from] jpeg_encoder::EncodingError),
     /// The PNG encoder refused the frame.
     #[error("frame could not be encoded as PNG")]
-    Png(#[from] png::EncodingError),
+    Png(#[from] image::ImageError),
 }
 
 /// Encodes a baseline JPEG; below quality 90 chroma is halved in both directions.
@@ -80,13 +82,12 @@ pub fn encode_jpeg(frame: &Frame, quality: Quality) -> Result<Vec<u8>, EncodeErr
 /// When the frame has no pixels.
 pub fn encode_png(frame: &Frame) -> Result<Vec<u8>, EncodeError> {
     let mut bytes = Vec::with_capacity(frame.rgb().len() / 2);
-    let mut encoder = png::Encoder::new(&mut bytes, frame.width(), frame.height());
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(frame.rgb())?;
-    writer.finish()?;
+    PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive).write_image(
+        frame.rgb(),
+        frame.width(),
+        frame.height(),
+        ExtendedColorType::Rgb8,
+    )?;
     Ok(bytes)
 }
 

