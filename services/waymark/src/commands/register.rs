@@ -21,7 +21,8 @@ use vision::register::ShapeVeto;
 use crate::console::Console;
 use crate::exit::{Ending, Failure, OrUsage};
 
-use names::{FormatName, ModeName, PredictionName};
+pub(super) use names::ModeName;
+use names::{FormatName, PredictionName};
 use tally::Tally;
 
 const EXAMPLES: &str = "\

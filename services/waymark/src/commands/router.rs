@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use leader::store::Store;
 use runtime::SessionSettings;
 use runtime::telemetry::LogSettings;
 
@@ -18,13 +19,20 @@ pub(crate) struct Args {
     /// Zenoh configuration (JSON5) to be used as it is, for TLS, users and access control
     #[arg(long, value_name = "FILE", conflicts_with = "listen")]
     zenoh: Option<PathBuf>,
+
+    /// Directory in which every leader's landmarks are kept, to answer for leaders that are gone
+    #[arg(long, value_name = "DIR")]
+    store: Option<PathBuf>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Ending, Failure> {
     let settings = SessionSettings { file: args.zenoh.clone(), ..SessionSettings::router(&args.listen) };
-    run_until_signal(&settings, &LogSettings::default(), async |_session, shutdown| {
+    run_until_signal(&settings, &LogSettings::default(), async |session, shutdown| {
         tracing::info!(listen = args.listen, "router");
-        shutdown.requested().await;
+        match &args.store {
+            Some(directory) => Store::open(&session, directory).await?.run(shutdown).await,
+            None => shutdown.requested().await,
+        }
         Ok(Ending::Fine)
     })
 }

@@ -17,6 +17,10 @@ use crate::scene::{Drive, frame, text};
 
 const TOPIC: &str = "/v2/camera/front/image";
 
+fn encoded<M: WireMessage>(message: &M) -> Vec<u8> {
+    message.encode_to_vec()
+}
+
 /// A recording of `frames` pictures, 100 ms apart.
 fn recorded(directory: &Path, frames: u32) -> PathBuf {
     let journal = Journal::start(JournalOptions::new(directory, "v2")).unwrap();
@@ -34,7 +38,7 @@ fn recorded(directory: &Path, frames: u32) -> PathBuf {
             log_time_ns: captured_at.nanos as u64,
             publish_time_ns: captured_at.nanos as u64,
             sequence: number,
-            data: image.encode_to_vec().into(),
+            data: encoded(&image).into(),
             latch: Latch::None,
         });
     }

@@ -1,6 +1,7 @@
 //! The convoy itself: who is started, who connects to whom, and in which order they end.
 
-use std::net::{Ipv4Addr, TcpListener};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -56,7 +57,10 @@ impl Convoy {
         lesson: Vec<Landmark>,
         interrupted: &Shutdown,
     ) -> anyhow::Result<Self> {
-        let endpoint = free_endpoint().context("no free TCP port on 127.0.0.1")?;
+        let loopback = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        let endpoint = format!("tcp/{}", with_port(loopback).context("no free TCP port on 127.0.0.1")?);
+        let follower_page = with_port(args.listen)
+            .with_context(|| format!("--listen {} cannot be bound; choose another address", args.listen))?;
         let mut sessions = vec![SessionSettings::router(&endpoint).open().await?];
         for _ in 0..5 {
             sessions.push(SessionSettings::client(&endpoint).open().await?);
@@ -72,7 +76,8 @@ impl Convoy {
             Leader::start(&leader_config(args, state.path()), for_leader.clone(), parts.clone()).await?;
         leader.handle().edit(Edit { publish: lesson, ..Edit::default() }).await?;
         let judge = Judge::begin(for_judge).await?;
-        let config = follower_config(args, state.path());
+        let pages = (page(follower_page), page(leader.page()));
+        let config = follower_config(args, follower_page, state.path());
         let follower = tokio::spawn(::follower::run(config, for_follower.clone(), parts.clone()));
         let camera = |vehicle: &str, number, session: &Session| {
             tokio::spawn(::camera::run(
@@ -83,7 +88,6 @@ impl Convoy {
         };
         let cameras =
             vec![camera("leader", LEADER, first_camera), camera("follower", FOLLOWER, second_camera)];
-        let pages = (format!("http://{}/", args.listen), format!("http://{}/", args.leader_listen));
         let started_at = Instant::now();
         Ok(Self {
             started_at,
@@ -204,7 +208,7 @@ async fn subscribe<M: WireMessage + 'static>(
     subscriber.await.map_err(|error| anyhow::anyhow!(error).context("subscribing to what is to be scored"))
 }
 
-fn leader_config(args: &Args, state: &std::path::Path) -> LeaderConfig {
+fn leader_config(args: &Args, state: &Path) -> LeaderConfig {
     let mut config = LeaderConfig {
         fleet: FLEET.to_owned(),
         vehicle: "leader".to_owned(),
@@ -215,7 +219,7 @@ fn leader_config(args: &Args, state: &std::path::Path) -> LeaderConfig {
     config
 }
 
-fn follower_config(args: &Args, state: &std::path::Path) -> FollowerConfig {
+fn follower_config(args: &Args, page: SocketAddr, state: &Path) -> FollowerConfig {
     let mut config = FollowerConfig {
         fleet: FLEET.to_owned(),
         vehicle: "follower".to_owned(),
@@ -224,7 +228,7 @@ fn follower_config(args: &Args, state: &std::path::Path) -> FollowerConfig {
         state_dir: state.join("follower"),
         ..FollowerConfig::default()
     };
-    config.http.listen = args.listen;
+    config.http.listen = page;
     config.recorder.directory.clone_from(&args.recordings);
     config
 }
@@ -239,8 +243,11 @@ fn camera_config(args: &Args, vehicle: &str, number: u32) -> CameraConfig {
     }
 }
 
-/// A port that nobody listened on a moment ago.
-fn free_endpoint() -> std::io::Result<String> {
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
-    Ok(format!("tcp/{}", listener.local_addr()?))
+/// The same address; with a port that nobody listened on a moment ago where it has none.
+fn with_port(address: SocketAddr) -> std::io::Result<SocketAddr> {
+    TcpListener::bind(address)?.local_addr()
+}
+
+fn page(address: SocketAddr) -> String {
+    format!("http://{address}/")
 }

@@ -135,7 +135,7 @@ impl From<PresetName> for Preset {
     }
 }
 
-pub(crate) fn run(args: Args, console: Console) -> Result<Ending, Failure> {
+pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
     let landmark = learn_from_files(&args.regions, &args.options()).or_usage()?;
     let text = landmark_text(&landmark).context("cannot write the landmark as JSON")?;
     match &args.output {

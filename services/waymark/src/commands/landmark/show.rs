@@ -22,7 +22,7 @@ pub(crate) struct Args {
     json: bool,
 }
 
-pub(crate) fn run(args: &Args, _console: Console) -> Result<Ending, Failure> {
+pub(crate) fn run(args: &Args) -> Result<Ending, Failure> {
     for path in &args.files {
         let landmark = read_landmark(path).or_usage()?;
         let text = match args.json {

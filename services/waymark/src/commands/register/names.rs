@@ -6,7 +6,7 @@ use vision::follow::Mode;
 use vision::predict::PredictionMethod;
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-pub(super) enum ModeName {
+pub(crate) enum ModeName {
     /// The published method: fixed statistics and tolerances, every frame searched whole
     Faithful,
     /// Follows light, noise and scale, and searches where the object is expected first

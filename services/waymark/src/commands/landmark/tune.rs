@@ -1,0 +1,134 @@
+//! `waymark landmark tune`.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use analysis::input::Input;
+use analysis::landmark_file::{landmark_text, read_landmark};
+use analysis::register::{Job, Timing};
+use analysis::truth::Truth;
+use analysis::tune::{Change, Judge, Trial, most_trials, tune};
+use anyhow::Context;
+use vision::ColorStats;
+use vision::follow::FollowOptions;
+
+use crate::columns::Columns;
+use crate::commands::register::ModeName;
+use crate::console::Console;
+use crate::exit::{Ending, Failure, OrUsage};
+
+const EXAMPLES: &str = "\
+Example: waymark landmark tune drive --landmark red.json --truth drive/truth.csv -o red-tuned.json
+
+Truth is CSV with the columns frame,object,cx,cy,area,x0,y0,x1,y1,visible (centres counted from the centre of the first
+pixel), where the object is named like the landmark; or a box x,y,w,h on every line, one a frame.";
+
+/// Try windows and tolerances on a sequence and recommend the best
+///
+/// Windows first, then tolerances of the means, then of the variances, each with the best of what was tried before. A
+/// false claim weighs five times a detection. Without a truth file, a measurement is taken for right when it lies within
+/// one object size of the one before.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// Directory or quoted glob of pictures, or a recording
+    input: String,
+
+    /// The landmark file to begin with
+    #[arg(long, short, value_name = "FILE")]
+    landmark: PathBuf,
+
+    /// Where the object really was
+    #[arg(long, value_name = "FILE")]
+    truth: Option<PathBuf>,
+
+    /// How frames are searched
+    #[arg(long, value_enum, default_value_t = ModeName::Adaptive)]
+    mode: ModeName,
+
+    /// Write the recommended landmark to this file
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
+    let given = read_landmark(&args.landmark).or_usage()?;
+    let input = Input::parse(&args.input).or_usage()?;
+    let judge = match &args.truth {
+        Some(path) => Judge::Truth(Truth::read(path, &given.id).or_usage()?),
+        None => Judge::Persistence,
+    };
+    let job = Job {
+        landmarks: None,
+        options: FollowOptions { mode: args.mode.into(), ..FollowOptions::default() },
+        threads: NonZeroUsize::MIN,
+        timing: Timing::Off,
+        overlays: None,
+    };
+    let bar = console.progress(most_trials() as u64, "trying");
+    let mut trials = Vec::new();
+    let best = tune(&input, &given, &judge, &job, |trial| {
+        bar.inc(1);
+        trials.push(trial.clone());
+    });
+    bar.finish_and_clear();
+    let best = best.or_usage()?;
+    let report = format!("{}\n{}", table(&trials, &best), reason(&trials[0], &best));
+    Console::write_results(report.as_bytes())?;
+    if let Some(path) = &args.output {
+        let text = landmark_text(&best.landmark).context("cannot write the landmark as JSON")?;
+        std::fs::write(path, text).with_context(|| format!("cannot write `{}`", path.display()))?;
+    }
+    Ok(Ending::Fine)
+}
+
+fn table(trials: &[Trial], best: &Trial) -> String {
+    let mut table = Columns::new(["tried", "window", "± mean", "± variance", "found %", "false %", ""]);
+    for trial in trials {
+        let ColorStats { mean, variance } = trial.landmark.tolerance;
+        table.row([
+            name(trial.change).to_owned(),
+            format!("{}×{}", trial.landmark.window_px.width, trial.landmark.window_px.height),
+            three(mean),
+            three(variance),
+            format!("{:.1}", 100.0 * trial.detection_rate),
+            format!("{:.1}", 100.0 * trial.false_rate),
+            if trial == best { "best".to_owned() } else { String::new() },
+        ]);
+    }
+    table.text()
+}
+
+fn name(change: Change) -> &'static str {
+    match change {
+        Change::Nothing => "as given",
+        Change::Window => "window",
+        Change::MeanTolerance => "mean tolerance",
+        Change::VarianceTolerance => "variance tolerance",
+    }
+}
+
+/// One number where all channels agree, three where they do not.
+fn three([red, green, blue]: [f32; 3]) -> String {
+    if red == green && green == blue { format!("{red:.1}") } else { format!("{red:.1}/{green:.1}/{blue:.1}") }
+}
+
+fn reason(given: &Trial, best: &Trial) -> String {
+    if best.landmark == given.landmark {
+        return "Keep the landmark as it is: nothing tried found more without more false claims.\n"
+            .to_owned();
+    }
+    let percent = |rate: f64| format!("{:.1} %", 100.0 * rate);
+    format!(
+        "Use window {}×{} with tolerances {} (means) and {} (variances): found in {} of the frames instead of {}, false \
+         claims in {} instead of {}.\n",
+        best.landmark.window_px.width,
+        best.landmark.window_px.height,
+        three(best.landmark.tolerance.mean),
+        three(best.landmark.tolerance.variance),
+        percent(best.detection_rate),
+        percent(given.detection_rate),
+        percent(best.false_rate),
+        percent(given.false_rate),
+    )
+}
