@@ -14,3 +14,4 @@ pub mod score;
 pub mod stage_times;
 pub mod table;
 pub mod truth;
+pub mod tune;

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use vision::PointPx;
+use vision::{LandmarkOutcome, PointPx};
 
 use crate::truth::{TrueObject, Truth};
 
@@ -20,6 +20,15 @@ pub struct Claim {
     pub area_px2: f32,
     /// Belief, 0..1.
     pub score: f32,
+}
+
+impl Claim {
+    /// What an outcome claims, if anything.
+    #[must_use]
+    pub fn of(outcome: &LandmarkOutcome) -> Option<Self> {
+        let seen = outcome.result.as_ref().ok()?;
+        Some(Self { centre: seen.centroid, area_px2: seen.area_px2, score: seen.score })
+    }
 }
 
 /// How well the measurements agree with the truth. Rates are parts of `frames`; figures without data are null.

@@ -30,11 +30,8 @@ fn sequences() -> Option<PathBuf> {
     }
     // Past the test harness, which swallows what a passing test prints.
     let place = sequences.display();
-    writeln!(
-        std::io::stderr(),
-        "SKIPPED: no sequences in {place}; set WAYMARK_SHARED to what holds data/sequences"
-    )
-    .unwrap();
+    let told = format!("SKIPPED: no sequences in {place}; set WAYMARK_SHARED to what holds data/sequences\n");
+    std::io::stderr().write_all(told.as_bytes()).unwrap();
     None
 }
 
@@ -70,13 +67,7 @@ fn claims(frames: &Path, job: &Job) -> BTreeMap<u64, Vec<Claim>> {
     let mut claims: BTreeMap<u64, Vec<Claim>> = BTreeMap::new();
     let done = register(vec![(input, frames)], job, |_, event| -> Result<(), Infallible> {
         let Event::Registered { frame, outcome, .. } = event else { panic!("{event:?}") };
-        let seen = outcome.landmarks.iter().filter_map(|landmark| landmark.result.as_ref().ok());
-        let claim = |seen: &vision::Sighting| Claim {
-            centre: seen.centroid,
-            area_px2: seen.area_px2,
-            score: seen.score,
-        };
-        claims.entry(frame).or_default().extend(seen.map(claim));
+        claims.entry(frame).or_default().extend(outcome.landmarks.iter().filter_map(Claim::of));
         Ok(())
     });
     done.unwrap();

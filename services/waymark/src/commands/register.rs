@@ -31,9 +31,10 @@ Examples:
   waymark register 'left/*.jpg' --landmark stop.json --mode faithful --require-shape --stats cost.json
   waymark register recordings/*.mcap --format ndjson > all.ndjson
 
-Columns: input, frame (from 1 within its input and camera), captured_at_ns (Unix epoch; nominal for plain pictures, 30 a second
-from 0), camera, landmark, instance, result (measured, or why not), x_px, y_px, area_px2, mask_area_2x, shape_score,
-score, predicted_x_px, predicted_y_px, predicted_area_px2, innovation_px, gain, bearing_rad, range_m. Unknown is empty.
+Columns: input, frame (from 1 within its input and camera), captured_at_ns (Unix epoch; nominal for plain pictures, 30 a \
+second from 0), camera, landmark, instance, result (measured, or why not), x_px, y_px, area_px2, mask_area_2x, \
+shape_score, score, predicted_x_px, predicted_y_px, predicted_area_px2, innovation_px, gain, bearing_rad, range_m. \
+Unknown is empty.
 
 A picture that cannot be read or decoded is named on stderr, has no rows, and makes the exit code 3.";
 

@@ -24,8 +24,7 @@ fn a_learned_landmark_is_shown_with_its_six_statistics() {
 #[test]
 fn options_override_what_is_fitted() {
     let drive = Drive::of(2);
-    let region =
-        format!("{}#xywh={},{TOP_PX},{SIDE_PX},{SIDE_PX}", text(&drive.path("near.png")), left_px(2));
+    let region = format!("{}#xywh={},{TOP_PX},{SIDE_PX},{SIDE_PX}", text(&drive.near()), left_px(2));
     let args = [
         "landmark",
         "learn",
@@ -53,7 +52,7 @@ fn options_override_what_is_fitted() {
 #[test]
 fn what_cannot_be_learned_is_said_and_why() {
     let drive = Drive::of(2);
-    let near = text(&drive.path("near.png")).to_owned();
+    let near = text(&drive.near()).to_owned();
     let learn = |region: &str, id: &str| {
         waymark(["landmark", "learn", &format!("{near}{region}"), "--id", id]).ended(2)
     };

@@ -42,7 +42,8 @@ impl Drive {
             let jpeg = encode_jpeg(&frame(number), Quality::default()).unwrap();
             std::fs::write(drive.frames().join(format!("f{number}.jpg")), jpeg).unwrap();
         }
-        let png = drive.path("near.png");
+        std::fs::create_dir(drive.path("learned")).unwrap();
+        let png = drive.near();
         std::fs::write(&png, encode_png(&frame(2)).unwrap()).unwrap();
         let region = format!("{}#xywh={},{TOP_PX},{SIDE_PX},{SIDE_PX}", png.display(), left_px(2));
         let learned = drive.landmark();
@@ -67,6 +68,11 @@ impl Drive {
 
     pub(crate) fn landmark(&self) -> PathBuf {
         self.path("red.json")
+    }
+
+    /// The picture that the landmark was learned from.
+    pub(crate) fn near(&self) -> PathBuf {
+        self.path("learned").join("near.png")
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {

@@ -20,8 +20,8 @@ use crate::exit::{Ending, Failure, OrUsage};
 const EXAMPLES: &str = "\
 Example: waymark landmark tune drive --landmark red.json --truth drive/truth.csv -o red-tuned.json
 
-Truth is CSV with the columns frame,object,cx,cy,area,x0,y0,x1,y1,visible (centres counted from the centre of the first
-pixel), where the object is named like the landmark; or a box x,y,w,h on every line, one a frame.";
+Truth is CSV with the columns frame,object,cx,cy,area,x0,y0,x1,y1,visible (centres counted from the centre of the \
+first pixel), where the object is named like the landmark; or a box x,y,w,h on every line, one a frame.";
 
 /// Try windows and tolerances on a sequence and recommend the best
 ///
