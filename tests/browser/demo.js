@@ -23,13 +23,13 @@ export async function freePort() {
 }
 
 /** Starts `waymark demo` and waits until its camera is live. */
-export async function startDemo({ port = 0, seed = 7 } = {}) {
+export async function startDemo({ port = 0 } = {}) {
   const binary = PLACES.find((place) => place && existsSync(place));
   if (!binary) throw new Error("no binary to test: build it with cargo or set WAYMARK_BIN");
   const recordings = await mkdtemp(join(tmpdir(), "waymark-browser-"));
   const [http, leader] = [port || (await freePort()), await freePort()];
   const program = spawn(binary, [
-    "demo", "--headless", "--duration", "600s", "--seed", String(seed), "--listen", `127.0.0.1:${http}`,
+    "demo", "--headless", "--duration", "600s", "--listen", `127.0.0.1:${http}`,
     "--leader-listen", `127.0.0.1:${leader}`, "--recordings", recordings,
   ], { stdio: ["ignore", "pipe", "pipe"] });
   const said = [];
@@ -37,7 +37,7 @@ export async function startDemo({ port = 0, seed = 7 } = {}) {
   const url = `http://127.0.0.1:${http}`;
   const demo = { url, leaderUrl: `http://127.0.0.1:${leader}`, port: http, recordings, program, stop };
   try {
-    await until(() => program.exitCode === null && isLive(url), () => `the demo did not come to life:\n${said.join("")}`);
+    await until(() => isLive(url), () => program.exitCode !== null, () => `the demo did not come to life:\n${said.join("")}`);
   } catch (error) {
     await stop();
     throw error;
@@ -61,11 +61,11 @@ async function isLive(url) {
   return status?.cameras?.some((/** @type {any} */ camera) => camera.state === "live" && camera.landmarks.length > 0) ?? false;
 }
 
-/** @param {() => boolean | Promise<boolean>} condition @param {() => string} complaint */
-async function until(condition, complaint) {
+/** @param {() => Promise<boolean>} condition @param {() => boolean} isHopeless @param {() => string} complaint */
+async function until(condition, isHopeless, complaint) {
   const deadline = Date.now() + START_MS;
   while (!(await condition())) {
-    if (Date.now() > deadline) throw new Error(complaint());
+    if (isHopeless() || Date.now() > deadline) throw new Error(complaint());
     await new Promise((next) => setTimeout(next, 100));
   }
 }
