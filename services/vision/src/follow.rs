@@ -7,7 +7,7 @@ mod budget;
 mod faithful;
 mod pursue;
 mod reason;
-mod report;
+pub(crate) mod report;
 mod state;
 
 pub use state::{FollowState, LandmarkState, Track};

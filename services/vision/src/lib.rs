@@ -17,6 +17,7 @@ mod adaptive;
 pub mod doubled_grid;
 #[cfg(test)]
 mod drawn;
+pub mod explain;
 pub mod follow;
 pub mod frame;
 pub mod gate;
@@ -42,6 +43,7 @@ pub mod timestamp;
 
 pub use bitmask::{BitMask, Run};
 pub use components::{Component, Components};
+pub use explain::{Comparison, Explanation, explain};
 pub use follow::{Follow, FollowOptions, FollowState, FrameStamp, Mode};
 pub use frame::Frame;
 pub use geometry::{PointPx, RectPx, Segment, SizePx};

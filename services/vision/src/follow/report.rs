@@ -4,12 +4,12 @@ use crate::landmark::Landmark;
 use crate::outcome::{LandmarkOutcome, Miss, Sighting};
 
 /// A landmark's object that was found.
-pub(super) fn measured(landmark: &Landmark, instance: u32, sighting: Sighting) -> LandmarkOutcome {
+pub(crate) fn measured(landmark: &Landmark, instance: u32, sighting: Sighting) -> LandmarkOutcome {
     LandmarkOutcome { result: Ok(sighting), ..missed(landmark, instance, Miss::Skipped) }
 }
 
 /// A landmark's object that was not found.
-pub(super) fn missed(landmark: &Landmark, instance: u32, reason: Miss) -> LandmarkOutcome {
+pub(crate) fn missed(landmark: &Landmark, instance: u32, reason: Miss) -> LandmarkOutcome {
     LandmarkOutcome {
         landmark: landmark.id.clone(),
         digest: landmark.digest,
