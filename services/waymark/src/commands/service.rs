@@ -16,7 +16,7 @@ use crate::exit::{Ending, Failure, OrUsage};
 #[derive(Debug, clap::Args)]
 pub(crate) struct ConfigArgs {
     /// Configuration file (TOML); may be given several times, later ones win
-    #[arg(long = "config", short, value_name = "FILE")]
+    #[arg(long = "config", short = 'c', value_name = "FILE")]
     files: Vec<PathBuf>,
 
     /// One setting, as in `--set http.listen=0.0.0.0:8080`; wins over files and WAYMARK__… variables
