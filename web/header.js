@@ -36,7 +36,7 @@ function service(status) {
 
 /** @param {any} leader @returns {Item} */
 function leader(leader) {
-  const name = leader.vehicle ? `Leader ${leader.vehicle}` : "Leader";
+  const name = leader.vehicle && leader.vehicle !== "leader" ? `Leader ${leader.vehicle}` : "Leader";
   const age = typeof leader.age_s === "number" ? leader.age_s + (silenceS() ?? 0) : null;
   if (leader.present) {
     return { name, level: "good", words: age === null ? "present" : `present, heard ${ago(age)}` };
@@ -91,7 +91,7 @@ function recorder(recorder) {
 export function showHeader() {
   const { status } = known;
   setText(byId("vehicle"), status?.vehicle ?? "Waymark");
-  setText(byId("role"), status?.role ?? "");
+  setText(byId("role"), status && status.role !== status.vehicle ? status.role : "");
   const all = items();
   reconcile(byId("states"), kept, all.map((item) => item.name), (name) =>
     make("div", "", make("dt", "", name), make("dd", "", makeState())));

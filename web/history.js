@@ -8,13 +8,13 @@ export const MAX_LINES = 6;
 /** @typedef {{at: number, value: number | null}} Sample */
 
 /**
- * What is plotted: a name, a unit, and the values that one camera entry gives, by line.
- * @type {{name: string, unit: string, digits: number, values: (camera: any) => [string, number | null][]}[]}
+ * What is plotted: a name, a unit, the top of the scale where it is fixed, and the values that one camera entry gives, by line.
+ * @type {{name: string, unit: string, digits: number, top?: number, values: (camera: any) => [string, number | null][]}[]}
  */
 export const PLOTS = [
   { name: "Off prediction", unit: "px", digits: 1, values: (camera) => perLandmark(camera, "innovation_px") },
   { name: "Area", unit: "px²", digits: 0, values: (camera) => perLandmark(camera, "area_px2") },
-  { name: "Score", unit: "", digits: 2, values: (camera) => perLandmark(camera, "score") },
+  { name: "Score", unit: "", digits: 2, top: 1, values: (camera) => perLandmark(camera, "score") },
   {
     name: "Delay",
     unit: "ms",

@@ -3,7 +3,7 @@
 import { byId, make, makeState, reconcile, setText, showState } from "./dom.js";
 import { STALE_AFTER_MS, frameAgeMs, known } from "./state.js";
 import { compare } from "./statistics.js";
-import { MISSING, ago, figure, missInWords } from "./words.js";
+import { MISSING, ago, figure, levelOf, missInWords } from "./words.js";
 
 /** @type {Map<string, HTMLTableRowElement>} */
 const rows = new Map();
@@ -92,7 +92,7 @@ function fillResult(state, entry, ageMs, revision) {
   } else if (measured) {
     showState(state, "good", "measured");
   } else {
-    showState(state, "bad", `missed: ${missInWords(entry.result, entry.miss)}`);
+    showState(state, levelOf(entry.result), `missed: ${missInWords(entry.result, entry.miss)}`);
   }
 }
 
@@ -111,9 +111,8 @@ function fillStatistic(element, one) {
 /** @param {Element | null} list @param {any} entry */
 function fillFacts(list, entry) {
   if (!list) return;
-  const place = typeof entry.x_px === "number" ? `${entry.x_px.toFixed(1)}, ${entry.y_px.toFixed(1)} px` : MISSING;
   const facts = [
-    ["Centre", place],
+    place(entry),
     ["Area", figure(entry.area_px2, 0, "px²")],
     ["Score", figure(entry.score, 2)],
     ["Shape", figure(entry.shape_score, 2)],
@@ -125,4 +124,12 @@ function fillFacts(list, entry) {
     setText(list.children[index].children[0], name);
     setText(list.children[index].children[1], value);
   });
+}
+
+/** Where it is, or where it was expected. @param {any} entry @returns {[string, string]} */
+function place(entry) {
+  const words = (/** @type {number} */ x, /** @type {number} */ y) => `${x.toFixed(1)}, ${y.toFixed(1)} px`;
+  if (typeof entry.x_px === "number") return ["Centre", words(entry.x_px, entry.y_px)];
+  if (typeof entry.predicted_x_px === "number") return ["Expected at", words(entry.predicted_x_px, entry.predicted_y_px)];
+  return ["Centre", MISSING];
 }

@@ -3,7 +3,7 @@
 import { byId, make, makeState, showState } from "./dom.js";
 import { items } from "./header.js";
 import { known } from "./state.js";
-import { missInWords } from "./words.js";
+import { levelOf, missInWords } from "./words.js";
 
 const MAX_LINES = 200;
 
@@ -23,9 +23,8 @@ export function watchChanges() {
   for (const item of items()) watch(item.name, { level: item.level, words: item.words.split(",")[0] }, `${item.name}|${item.level}`, 0);
   for (const camera of known.cameras.values()) {
     for (const entry of camera.landmarks ?? []) {
-      const measured = entry.result === "measured";
-      const words = measured ? "measured" : `lost: ${missInWords(entry.result, entry.miss)}`;
-      watch(nameOf(entry, camera), { level: measured ? "good" : "bad", words }, entry.result, SETTLE_MS);
+      const words = entry.result === "measured" ? "measured" : `lost: ${missInWords(entry.result, entry.miss)}`;
+      watch(nameOf(entry, camera), { level: levelOf(entry.result), words }, entry.result, SETTLE_MS);
     }
   }
 }

@@ -78,7 +78,7 @@ export function drawPlots() {
  * @param {[string, import("./history.js").Sample[]][]} lines @param {number} now @param {CSSStyleDeclaration} style
  */
 function drawPlot({ canvas, legend, scale }, plot, lines, now, style) {
-  const [low, high] = range(lines);
+  const [low, high] = plot.top ? [0, plot.top] : range(lines);
   setText(scale, lines.length > 0 ? `${low.toFixed(plot.digits)} to ${high.toFixed(plot.digits)}` : "no data");
   const pen = fit(canvas);
   if (!pen) return;

@@ -48,6 +48,15 @@ const MISSES = {
   skipped: () => "not looked for: this frame's share of work was used up",
 };
 
+/** Misses that say nothing against the landmark: it was not to be seen, or not looked for. */
+const NOT_TO_BE_SEEN = new Set(["outside_frame", "skipped"]);
+
+/** How grave a result is. @param {string} result @returns {import("./dom.js").Level} */
+export function levelOf(result) {
+  if (result === "measured") return "good";
+  return NOT_TO_BE_SEEN.has(result) ? "warn" : "bad";
+}
+
 /** Why a landmark was not measured. @param {string} result @param {Record<string, any> | null} [miss] */
 export function missInWords(result, miss) {
   const words = MISSES[result];
