@@ -153,6 +153,9 @@ pub struct MissStatus {
     /// By how many tolerances the worst statistic of the nearest window was off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excess: Option<f32>,
+    /// The six statistics of that nearest window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub observed: Option<Statistics>,
     /// Part of the object that is still seen, 0..1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub visible: Option<f32>,
@@ -231,7 +234,11 @@ impl From<&Miss> for MissStatus {
     fn from(miss: &Miss) -> Self {
         let named = Self { reason: miss.name(), ..Self::default() };
         match *miss {
-            Miss::NoColour { best } => Self { excess: best.map(|best| best.excess), ..named },
+            Miss::NoColour { best } => Self {
+                excess: best.map(|best| best.excess),
+                observed: best.map(|best| best.observed.into()),
+                ..named
+            },
             Miss::WrongShape { score } => Self { shape_score: Some(score), ..named },
             Miss::OutsideGate { innovation_px } => Self { innovation_px: Some(innovation_px), ..named },
             Miss::Occluded { visible } => Self { visible: Some(visible), ..named },
