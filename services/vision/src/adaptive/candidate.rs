@@ -5,7 +5,7 @@ use super::disc;
 use super::face::LETTERING_BRIGHTNESS;
 use super::likeness::Likeness;
 use super::patch::Patch;
-use super::segment;
+use super::segment::{self, Parts};
 use super::soft_edge::{self, Edge};
 use crate::bitmask::BitMask;
 use crate::components::{Component, Components};
@@ -16,10 +16,10 @@ use crate::landmark::{ColorStats, Landmark, ShapeClass};
 /// Fewer like pixels than this are no seed.
 const LEAST_SEED_PX: u64 = 5;
 /// Parts of a sign that lettering separates lie within this many sizes of its largest part.
-const PARTS_REACH: f32 = 0.3;
+const PARTS_REACH: f32 = 0.5;
 
 /// Signs whose parts fill this much of their hull are filled.
-const FILLED_SOLIDITY: f32 = 0.7;
+const FILLED_SOLIDITY: f32 = 0.55;
 /// Seeds larger than this show an outline, px.
 const DISC_SIZE_PX: u32 = 20;
 /// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
@@ -98,9 +98,13 @@ fn from_seeds(search: &Search<'_>) -> Vec<Candidate> {
             (f64::from(search.region.y) + y + 0.5) as f32,
         );
         if !found.iter().any(|known| known.covers(centre)) {
-            let seed = seed_patch(search, &components, seed, &seeds);
-            found.extend(candidate(search, &seed));
-            found.extend(round_candidate(search, &seed));
+            let alone = seed_patch(search, &components, seed, &[]);
+            found.extend(candidate(search, &alone));
+            found.extend(round_candidate(search, &alone));
+            let parts = parts_of_sign(search, seed, &seeds);
+            if !parts.is_empty() {
+                found.extend(candidate(search, &seed_patch(search, &components, seed, &parts)));
+            }
         }
     }
     found
@@ -125,41 +129,40 @@ fn like_pixels(search: &Search<'_>) -> BitMask {
     mask
 }
 
-/// A component with room around it; of a sign also the parts that lettering separates from it.
-fn seed_patch(search: &Search<'_>, components: &Components, seed: &Component, all: &[&Component]) -> Patch {
-    let reach = if search.landmark.shape.is_sign() {
-        (PARTS_REACH * (seed.width().max(seed.height())) as f32) as u32
-    } else {
-        0
-    };
+/// The parts of a sign that lettering separates from `seed`, its largest one.
+fn parts_of_sign<'a>(search: &Search<'_>, seed: &Component, all: &[&'a Component]) -> Vec<&'a Component> {
+    if !search.landmark.shape.is_sign() {
+        return Vec::new();
+    }
+    let reach = (PARTS_REACH * (seed.width().max(seed.height())) as f32) as u32;
     let belongs = |other: &&&Component| {
         let apart = |a: (u32, u32), b: (u32, u32)| b.0.saturating_sub(a.1).max(a.0.saturating_sub(b.1));
         let dx = apart((seed.x_start, seed.x_end), (other.x_start, other.x_end));
         let dy = apart((seed.y_start, seed.y_end), (other.y_start, other.y_end));
-        reach > 0 && dx.max(dy) <= reach && 20 * other.pixels >= seed.pixels && other.pixels <= seed.pixels
+        let itself =
+            (seed.x_start, seed.y_start, seed.pixels) == (other.x_start, other.y_start, other.pixels);
+        !itself && dx.max(dy) <= reach && 20 * other.pixels >= seed.pixels && other.pixels <= seed.pixels
     };
+    all.iter().filter(belongs).copied().collect()
+}
+
+/// A component and what belongs to it, with room around them.
+fn seed_patch(search: &Search<'_>, components: &Components, seed: &Component, parts: &[&Component]) -> Patch {
     let mut bounds = (seed.x_start, seed.y_start, seed.x_end, seed.y_end);
-    let parts: Vec<&&Component> = all.iter().filter(belongs).collect();
-    for part in &parts {
-        bounds = (
-            bounds.0.min(part.x_start),
-            bounds.1.min(part.y_start),
-            bounds.2.max(part.x_end),
-            bounds.3.max(part.y_end),
-        );
+    let mut runs = components.runs(seed).to_vec();
+    for part in parts {
+        let (left, top) = (bounds.0.min(part.x_start), bounds.1.min(part.y_start));
+        bounds = (left, top, bounds.2.max(part.x_end), bounds.3.max(part.y_end));
+        runs.extend_from_slice(components.runs(part));
     }
     let (x, y) = (search.region.x + bounds.0, search.region.y + bounds.1);
     let bounds = RectPx { x, y, width: bounds.2 - bounds.0, height: bounds.3 - bounds.1 };
-    let rect = segment::surroundings(bounds, search.frame);
-    let mut runs = components.runs(seed).to_vec();
-    for part in parts {
-        runs.extend_from_slice(components.runs(part));
-    }
-    Patch::from_runs(rect, search.region, &runs)
+    Patch::from_runs(segment::surroundings(bounds, search.frame), search.region, &runs)
 }
 
 fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
-    let seen = segment::object(search.frame, seed, search.likeness)?;
+    let parts = if search.landmark.shape.is_sign() { Parts::All } else { Parts::Largest };
+    let seen = segment::object(search.frame, seed, search.likeness, parts)?;
     let form = Form::of(&seen);
     let sign = search.landmark.shape.is_sign() && form.solidity >= FILLED_SOLIDITY;
     let object = if sign { seen.convex() } else { seen };

@@ -42,10 +42,10 @@ impl Form {
     /// How well it suits a shape class whatever the details of its outline, 0..1.
     fn suits(&self, shape: ShapeClass) -> f32 {
         let (longest, least_solid) = match shape {
-            ShapeClass::Octagon | ShapeClass::Circle => (1.35, 0.82),
+            ShapeClass::Octagon | ShapeClass::Circle => (1.35, 0.6),
             ShapeClass::Block => (1.7, 0.8),
-            ShapeClass::Triangle => (1.7, 0.8),
-            ShapeClass::Rectangle => (6.0, 0.8),
+            ShapeClass::Triangle => (1.7, 0.6),
+            ShapeClass::Rectangle => (6.0, 0.6),
             ShapeClass::Any => (4.0, 0.6),
         };
         let too_long = (self.elongation / longest).max(1.0) - 1.0;

@@ -126,22 +126,24 @@ impl Patch {
         }
     }
 
-    /// The 4-connected parts, each as a patch of the same rectangle with its overlap with `seed`; the part that
-    /// overlaps most.
-    pub(crate) fn part_overlapping(&self, seed: &Self) -> Option<Self> {
+    /// The 4-connected part that overlaps `seed` most, with every other whose overlap is at least `least` of that.
+    pub(crate) fn parts_overlapping(&self, seed: &Self, least: f32) -> Option<Self> {
         let mut seen = Self::empty(self.rect);
-        let mut best: Option<(usize, Self)> = None;
+        let mut parts: Vec<(usize, Self)> = Vec::new();
         for (x, y) in self.places() {
-            if !self.get(x, y) || seen.get(x, y) {
-                continue;
-            }
-            let part = self.flooded(x, y, &mut seen);
-            let overlap = part.set_places().filter(|&(u, v)| seed.get(u, v)).count();
-            if overlap > 0 && best.as_ref().is_none_or(|(most, _)| overlap > *most) {
-                best = Some((overlap, part));
+            if self.get(x, y) && !seen.get(x, y) {
+                let part = self.flooded(x, y, &mut seen);
+                let overlap = part.set_places().filter(|&(u, v)| seed.get(u, v)).count();
+                parts.push((overlap, part));
             }
         }
-        best.map(|(_, part)| part)
+        let most = parts.iter().map(|(overlap, _)| *overlap).max().filter(|&most| most > 0)?;
+        let mut kept = parts.into_iter().filter(|(overlap, _)| *overlap as f32 >= least * most as f32);
+        let (_, mut union) = kept.next()?;
+        for (_, part) in kept {
+            union.cells.iter_mut().zip(&part.cells).for_each(|(cell, more)| *cell |= more);
+        }
+        Some(union)
     }
 
     fn flooded(&self, x: i32, y: i32, seen: &mut Self) -> Self {
@@ -301,6 +303,6 @@ mod tests {
     fn the_part_with_the_seed_is_kept() {
         let two = Patch::from_fn(RECT, |x, _| !(3..=8).contains(&x));
         let seed = Patch::from_fn(RECT, |x, y| x == 10 && y == 4);
-        assert_eq!(two.part_overlapping(&seed).unwrap().count(), 27);
+        assert_eq!(two.parts_overlapping(&seed, 1.0).unwrap().count(), 27);
     }
 }

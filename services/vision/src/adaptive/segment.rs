@@ -19,8 +19,17 @@ const BACKGROUND_COLOURS: usize = 16;
 /// Whiskers are cut off objects of at least this many pixels across.
 const OPENING_SIZE_PX: f32 = 11.0;
 
+/// Which connected parts make one object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Parts {
+    /// The one that shares most with the seed.
+    Largest,
+    /// All that share a good deal with the seed: lettering separates them.
+    All,
+}
+
 /// The pixels of the object that `seed` is part of. The seed's rectangle must leave room around it.
-pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness) -> Option<Patch> {
+pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Parts) -> Option<Patch> {
     let size_px = (seed.count() as f32).sqrt();
     let reach = (0.3 * size_px).ceil().max(2.0) as i32;
     let own = object_colours(frame, seed);
@@ -36,7 +45,11 @@ pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness) -> Option
     if size_px >= OPENING_SIZE_PX {
         object = object.opened(1);
     }
-    object.part_overlapping(seed).map(|part| part.filled())
+    let least = match parts {
+        Parts::Largest => 1.0,
+        Parts::All => 0.1,
+    };
+    object.parts_overlapping(seed, least).map(|part| part.filled())
 }
 
 /// A rectangle around `bounds` with room for the background to show itself.
