@@ -71,7 +71,11 @@ impl Queue {
         let limit_bytes = if bulky { self.bounds.bulk_limit_bytes() } else { self.bounds.bytes };
         let mut inner = self.lock();
         for message in &batch {
-            *inner.offered.entry(message.channel.topic.clone()).or_default() += 1;
+            // Only a topic's first message copies the key.
+            match inner.offered.get_mut(&message.channel.topic) {
+                Some(offered) => *offered += 1,
+                None => drop(inner.offered.insert(message.channel.topic.clone(), 1)),
+            }
         }
         let fits = inner.messages + batch.len() <= self.bounds.messages && inner.bytes + bytes <= limit_bytes;
         if inner.closed || !fits {
