@@ -24,6 +24,10 @@ const fn subjects(scene: SceneKind) -> &'static [(&'static str, ShapeClass)] {
     }
 }
 
+/// An object of which less than this part can be seen in a picture is not learned from it: something may stand in front
+/// of it in all of them.
+const LEAST_VISIBLE: f64 = 0.9;
+
 /// Learns every subject of the scene from the leader's own pictures.
 pub(super) fn learn_from(scene: SceneKind, seed: u64) -> anyhow::Result<Vec<Landmark>> {
     let options = SceneOptions { seed, vehicle: LEADER, ..SceneOptions::new(scene) };
@@ -38,10 +42,10 @@ pub(super) fn learn_from(scene: SceneKind, seed: u64) -> anyhow::Result<Vec<Land
     subjects(scene).iter().map(|&(id, shape)| landmark(id, shape, &views)).collect()
 }
 
-/// Learns one landmark from the picture in which its object is largest and wholly visible.
+/// Learns one landmark from the picture in which its object is largest and hardly covered.
 fn landmark(id: &str, shape: ShapeClass, views: &[(Frame, Vec<TrueObject>)]) -> anyhow::Result<Landmark> {
     let seen = views.iter().flat_map(|(frame, truth)| truth.iter().map(move |object| (frame, object)));
-    let whole = seen.filter(|(_, object)| object.object.starts_with(id) && object.visible > 0.99);
+    let whole = seen.filter(|(_, object)| object.object.starts_with(id) && object.visible > LEAST_VISIBLE);
     let best = whole.max_by(|(_, a), (_, b)| a.area_px2.total_cmp(&b.area_px2));
     let (frame, object) =
         best.ok_or_else(|| anyhow::anyhow!("`{id}` does not show in the leader's first pictures"))?;
