@@ -23,7 +23,8 @@ BINARY = Path(os.environ.get("WAYMARK_BIN", images.ROOT / "target/debug/waymark"
 def compose(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
     """Runs compose, v1 or v2, with our image and our router."""
     program = ["docker-compose"] if shutil.which("docker-compose") else ["docker", "compose"]
-    environment = {**os.environ, "WAYMARK_IMAGE": images.WAYMARK}
+    # The default router is scaled to none, but compose wants its image all the same.
+    environment = {**os.environ, "WAYMARK_IMAGE": images.WAYMARK, "ZENOH_IMAGE": images.WAYMARK}
     command = [*program, "-p", "waymark-test", "--profile", "waymark-router", *arguments]
     return subprocess.run(command, cwd=images.ROOT, env=environment, check=True, text=True, **options)
 

@@ -85,6 +85,7 @@ fn a_demo_registers_answers_and_records() {
 #[test]
 fn sigterm_finishes_the_recording_while_clients_are_attached() {
     let demo = Demo::start("600s");
+    demo.face.json_once("/api/v1/status", |status| status["cameras"][0]["sequence"].as_u64() > Some(60));
     let _events = demo.face.stream("/api/v1/events");
     let camera = demo.face.json("/api/v1/status")["cameras"][0]["id"].as_str().unwrap().to_owned();
     let _pictures = demo.face.stream(&format!("/api/v1/cameras/{camera}/stream.mjpeg"));
@@ -116,7 +117,7 @@ fn assert_complete(file: &Path) {
         assert_eq!(found, account.offered - account.lost() + account.repeated, "{topic}: {account:?}");
     }
     assert!(
-        info.topics.values().any(|topic| topic.schema == "waymark.v1.Registration" && topic.messages > 30)
+        info.topics.values().any(|topic| topic.schema == "waymark.v1.Registration" && topic.messages >= 10)
     );
     assert_opens_elsewhere(file);
 }
