@@ -27,6 +27,17 @@ pub(super) struct Area {
     pub(super) blocks: Range<u32>,
 }
 
+impl Area {
+    /// This area in pieces at most `blocks` wide.
+    pub(super) fn strips(&self, blocks: u32) -> impl Iterator<Item = Self> {
+        let end = self.blocks.end;
+        self.blocks
+            .clone()
+            .step_by(blocks as usize)
+            .map(move |first| Self { rows: self.rows.clone(), blocks: first..end.min(first + blocks) })
+    }
+}
+
 /// What to test.
 #[derive(Clone, Copy)]
 pub(super) struct Question<'a> {
