@@ -81,8 +81,9 @@ impl Lettering {
     }
 }
 
-/// Right, left, below and above, moved along that side into the frame; `None` where the frame ends before.
-fn beside(about: RectPx, SizePx { width, height }: SizePx, frame: SizePx) -> [Option<RectPx>; 4] {
+/// Right, left, below, above, and a line further below and above, moved along that side into the frame; `None` where
+/// the frame ends before.
+fn beside(about: RectPx, SizePx { width, height }: SizePx, frame: SizePx) -> [Option<RectPx>; 6] {
     let y = (about.y + about.height / 2).saturating_sub(height / 2).min(frame.height.saturating_sub(height));
     let x = (about.x + about.width / 2).saturating_sub(width / 2).min(frame.width.saturating_sub(width));
     let at = |x: u32, y: u32| RectPx { x, y, width, height };
@@ -91,6 +92,8 @@ fn beside(about: RectPx, SizePx { width, height }: SizePx, frame: SizePx) -> [Op
         about.x.checked_sub(width + GAP_PX).map(|x| at(x, y)),
         Some(at(x, about.y + about.height + GAP_PX)),
         about.y.checked_sub(height + GAP_PX).map(|y| at(x, y)),
+        Some(at(x, about.y + about.height + height + 2 * GAP_PX)),
+        about.y.checked_sub(2 * (height + GAP_PX)).map(|y| at(x, y)),
     ]
 }
 
