@@ -52,7 +52,7 @@ test("the picture is live and the header says so in words", async () => {
   await states.getByText(/^live, /).waitFor();
   await states.getByText(/^present/).waitFor();
   await states.getByText("connected", { exact: true }).waitFor();
-  assert.match((await page.locator("#frame-facts").textContent()) ?? "", /frame \d+ · \d+ fps shown · \d+ × \d+ px/);
+  await page.locator("#frame-facts").getByText(/frame \d+ · \d+ fps shown · \d+ × \d+ px/).waitFor();
   assert.deepEqual(complaints, []);
   await close();
 });
