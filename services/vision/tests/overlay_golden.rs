@@ -29,7 +29,7 @@ fn background(size: SizePx) -> Frame {
             })
         })
         .collect();
-    Frame::from_rgb(size.width, size.height, rgb).unwrap()
+    Frame::from_rgb(size.width, size.height, rgb).expect("three bytes for each pixel")
 }
 
 fn square(centre: PointPx, side: f32) -> (Vec<PointPx>, Vec<Segment>) {
