@@ -2,7 +2,9 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::commands::{camera, completion, demo, follower, landmark, leader, recording, register, router};
+use crate::commands::{
+    camera, completion, demo, explain, follower, landmark, leader, recording, register, router,
+};
 
 /// What stands below the options.
 const EXIT_CODES: &str = "Exit codes: 0 fine, 1 failed, 2 usage or configuration, 3 finished with data lost.";
@@ -35,6 +37,7 @@ pub(crate) enum Command {
     #[command(subcommand)]
     Landmark(landmark::Command),
     Register(register::Args),
+    Explain(explain::Args),
     #[command(subcommand)]
     Recording(recording::Command),
     Completion(completion::Args),

@@ -3,6 +3,7 @@
 pub(crate) mod camera;
 pub(crate) mod completion;
 pub(crate) mod demo;
+pub(crate) mod explain;
 pub(crate) mod follower;
 pub(crate) mod landmark;
 pub(crate) mod leader;
@@ -26,6 +27,7 @@ pub(crate) fn run(cli: Cli) -> Result<Ending, Failure> {
         Command::Router(args) => router::run(&args),
         Command::Landmark(command) => landmark::run(command, console),
         Command::Recording(command) => recording::run(command, console),
+        Command::Explain(args) => explain::run(&args),
         Command::Register(args) => register::run(&args, console),
         Command::Completion(args) => completion::run(&args),
     }

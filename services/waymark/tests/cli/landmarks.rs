@@ -80,3 +80,21 @@ fn damaged_landmark_files_name_the_field() {
         waymark(["register", text(&drive.frames()), "--landmark", text(&bad)]).ended(2).telling("bad.json");
     }
 }
+
+#[test]
+fn a_frame_is_explained_statistic_by_statistic() {
+    let drive = Drive::of(2);
+    let picture = drive.path("why.png");
+    let frame = drive.frames().join("f1.jpg");
+    let landmark = drive.landmark();
+    let explained = ["explain", text(&frame), "--landmark", text(&landmark), "--picture", text(&picture)];
+    let found = waymark(explained).ended(0).stdout;
+    assert!(found.contains("red registered at 4"), "{found}");
+    assert_eq!(found.matches(" fits").count(), 7, "six statistics and an outline: {found}");
+    assert!(std::fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
+
+    std::fs::write(drive.path("grey.png"), drive.floor()).unwrap();
+    let bare = drive.path("grey.png");
+    let missed = waymark(["explain", text(&bare), "--landmark", text(&landmark)]).ended(0).stdout;
+    assert!(missed.contains("red not registered") && missed.contains("fails"), "{missed}");
+}

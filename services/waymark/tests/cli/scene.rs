@@ -70,6 +70,11 @@ impl Drive {
         self.path("red.json")
     }
 
+    /// A picture (PNG) without the block.
+    pub(crate) fn floor(&self) -> Vec<u8> {
+        encode_png(&Frame::from_rgb(160, 120, vec![110; 160 * 120 * 3]).unwrap()).unwrap()
+    }
+
     /// The picture that the landmark was learned from.
     pub(crate) fn near(&self) -> PathBuf {
         self.path("learned").join("near.png")

@@ -5,7 +5,7 @@ use crate::program::waymark;
 #[test]
 fn help_lists_every_command_and_the_exit_codes() {
     let help = waymark(["--help"]).ended(0).stdout;
-    for command in ["landmark", "register", "recording", "completion"] {
+    for command in ["landmark", "register", "explain", "recording", "completion"] {
         assert!(help.lines().any(|line| line.trim_start().starts_with(command)), "{command}: {help}");
     }
     assert!(help.contains("0 fine, 1 failed, 2 usage or configuration, 3 finished with data lost"), "{help}");

@@ -1,0 +1,151 @@
+//! `waymark explain`.
+
+use std::path::{Path, PathBuf};
+
+use analysis::landmark_file::read_landmark;
+use analysis::learn::read_frame;
+use anyhow::Context;
+use vision::explain::{Comparison, Explanation, explain};
+use vision::frame::encode::{Quality, encode_jpeg, encode_png};
+use vision::outcome::Statistic;
+use vision::overlay::{Layers, draw};
+use vision::{Frame, Landmark, Miss, Outcome, Prediction};
+
+use crate::columns::Columns;
+use crate::commands::register::ModeName;
+use crate::console::Console;
+use crate::exit::{Ending, Failure, OrUsage};
+
+const EXAMPLES: &str = "\
+Example: waymark explain drive/f120.jpg --landmark red.json --picture why.png";
+
+/// Say why a landmark was or was not registered in a picture, statistic by statistic
+///
+/// The six statistics are those at the place where the landmark was registered or, where it was not, at the place that
+/// came nearest. Nothing is known from earlier frames.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct Args {
+    /// The picture (JPEG, PNG)
+    frame: PathBuf,
+
+    /// Landmark file
+    #[arg(long, short, value_name = "FILE")]
+    landmark: PathBuf,
+
+    /// How the frame is searched
+    #[arg(long, value_enum, default_value_t = ModeName::Adaptive)]
+    mode: ModeName,
+
+    /// Write the picture with the explanation drawn in: PNG, or JPEG where the name ends in .jpg
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<Ending, Failure> {
+    let landmark = read_landmark(&args.landmark).or_usage()?;
+    let mut frame = read_frame(&args.frame).or_usage()?;
+    let explanation = explain(&frame, &landmark, args.mode.into());
+    let text = format!("{}: {}\n", args.frame.display(), described(&landmark, &explanation));
+    Console::write_results(text.as_bytes())?;
+    if let Some(path) = &args.picture {
+        draw_into(&mut frame, &explanation, &landmark);
+        write_picture(&frame, path)?;
+    }
+    Ok(Ending::Fine)
+}
+
+fn described(landmark: &Landmark, explanation: &Explanation) -> String {
+    let mut text = verdict(landmark, explanation);
+    let Some(at) = explanation.at else { return text };
+    let (shade, shades) = (explanation.shade + 1, landmark.shades.len());
+    let place = if explanation.outcome.result.is_ok() { "there" } else { "where it came nearest" };
+    text.push_str(&format!(
+        "\n\nStatistics {place}, at {:.1}, {:.1}, against shade {shade} of {shades}:\n",
+        at.x, at.y
+    ));
+    text.push_str(statistics(&explanation.statistics).trim_end());
+    if explanation.outcome.result.is_ok() && !explanation.failures().is_empty() {
+        text.push_str("\n\nRegistered all the same: adaptive mode follows light, noise and scale.");
+    }
+    text
+}
+
+fn verdict(landmark: &Landmark, explanation: &Explanation) -> String {
+    let shape = match explanation.shape_score {
+        Some(fit) => format!("outline fits {} to {fit:.2}", landmark.shape.name()),
+        None => "too small to show a shape".to_owned(),
+    };
+    match &explanation.outcome.result {
+        Ok(seen) => format!(
+            "{} registered at {:.1}, {:.1}; {:.0} px², {shape}, score {:.2}",
+            landmark.id, seen.centroid.x, seen.centroid.y, seen.area_px2, seen.score
+        ),
+        Err(miss) => format!("{} not registered: {}", landmark.id, reason(miss, explanation)),
+    }
+}
+
+fn reason(miss: &Miss, explanation: &Explanation) -> String {
+    match (miss, explanation.failures().as_slice()) {
+        (Miss::NoColour { .. }, []) => {
+            "single windows fit its statistics, but nothing stands out from its surroundings as the object"
+                .to_owned()
+        }
+        (Miss::NoColour { .. }, [worst, ..]) => format!(
+            "no window matched; the nearest one fails by {} most, {:.1} times what is allowed",
+            name(worst.statistic),
+            worst.excess
+        ),
+        (Miss::TooSmall, _) => "the object or the picture is smaller than the averaging window".to_owned(),
+        (Miss::WrongShape { score }, _) => {
+            format!("its colour was there, but the outline fits only to {score:.2}")
+        }
+        (Miss::OutsideGate { innovation_px }, _) => format!("what matched was {innovation_px:.0} px off"),
+        (Miss::Occluded { visible }, _) => format!("only {:.0} % of it can be seen", 100.0 * visible),
+        (Miss::OutsideFrame, _) => "it is expected outside the picture".to_owned(),
+        (Miss::Skipped, _) => "not looked for: the bound on work per frame was reached".to_owned(),
+    }
+}
+
+fn statistics(comparisons: &[Comparison]) -> String {
+    let mut table = Columns::new(["statistic", "unit", "observed", "expected", "±", "off / ±", ""]);
+    for Comparison { statistic, observed, expected, tolerance, excess } in comparisons {
+        let unit = if matches!(statistic, Statistic::Mean(_)) { "levels" } else { "levels²" };
+        let numbers = [observed, expected, tolerance].map(|number| format!("{number:.1}"));
+        let verdict = if *excess > 1.0 { "fails" } else { "fits" };
+        table.row(
+            [name(*statistic), unit.to_owned()]
+                .into_iter()
+                .chain(numbers)
+                .chain([format!("{excess:.2}"), verdict.to_owned()]),
+        );
+    }
+    table.text()
+}
+
+fn name(statistic: Statistic) -> String {
+    let (kind, channel) = match statistic {
+        Statistic::Mean(channel) => ("mean", channel),
+        Statistic::Variance(channel) => ("variance", channel),
+    };
+    format!("{kind} {}", ["red", "green", "blue"].get(usize::from(channel)).unwrap_or(&"?"))
+}
+
+/// Draws the outcome; a miss gets its cross where it came nearest.
+fn draw_into(frame: &mut Frame, explanation: &Explanation, landmark: &Landmark) {
+    let mut outcome = explanation.outcome.clone();
+    if let (Err(_), Some(at)) = (&outcome.result, explanation.at) {
+        let window_px2 = f32::from(landmark.window_px.width) * f32::from(landmark.window_px.height) / 4.0;
+        outcome.prediction = Some(Prediction { centroid: at, area_px2: window_px2, ..Prediction::default() });
+    }
+    let all = Outcome { frame_size: frame.size(), landmarks: vec![outcome], ..Outcome::default() };
+    draw(frame, &all, Layers::ALL);
+}
+
+fn write_picture(frame: &Frame, path: &Path) -> anyhow::Result<()> {
+    let is_jpeg =
+        path.extension().is_some_and(|e| e.eq_ignore_ascii_case("jpg") || e.eq_ignore_ascii_case("jpeg"));
+    let encoded = if is_jpeg { encode_jpeg(frame, Quality::default()) } else { encode_png(frame) };
+    let bytes = encoded.context("cannot encode the picture")?;
+    std::fs::write(path, bytes).with_context(|| format!("cannot write `{}`", path.display()))
+}
