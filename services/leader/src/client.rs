@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use prost::Message;
 use vision::{Landmark, LandmarkSet};
@@ -20,6 +20,10 @@ use zenoh::query::{ConsolidationMode, QueryTarget, Reply};
 use crate::book::{Edit, Others};
 
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(3);
+/// How long nobody may be there before that is the answer: who has just connected is known to all a moment later.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// Pause before asking again when nobody was there.
+const ASK_AGAIN_AFTER: Duration = Duration::from_millis(100);
 /// Times a set is fetched before what is there is called incomplete: queries and replies may be lost.
 const FETCH_ROUNDS: usize = 5;
 
@@ -28,6 +32,7 @@ const FETCH_ROUNDS: usize = 5;
 pub struct LandmarkClient {
     session: Session,
     keys: VehicleKeys,
+    patience: Duration,
 }
 
 /// Why a leader was not heard or not obeyed.
@@ -72,7 +77,13 @@ impl LandmarkClient {
     /// A client of the leader of the vehicle that `keys` belong to.
     #[must_use]
     pub fn new(session: Session, keys: VehicleKeys) -> Self {
-        Self { session, keys }
+        Self { session, keys, patience: PATIENCE }
+    }
+
+    /// The same client, that takes nobody being there for an answer at once.
+    #[must_use]
+    pub fn without_patience(self) -> Self {
+        Self { patience: Duration::ZERO, ..self }
     }
 
     /// The whole set, from whoever has the newest one.
@@ -82,7 +93,7 @@ impl LandmarkClient {
     pub async fn list(&self) -> Result<LandmarkSet, ClientError> {
         let mut incomplete = self.no_answer();
         for _ in 0..FETCH_ROUNDS {
-            let Some(manifest) = self.manifest().await? else { continue };
+            let Some(manifest) = self.manifest().await? else { return Err(self.no_answer()) };
             match self.fetch(&manifest).await {
                 Err(error @ ClientError::Incomplete { .. }) => incomplete = error,
                 fetched => return fetched,
@@ -96,7 +107,7 @@ impl LandmarkClient {
     /// # Errors
     /// When nobody's answer is that set.
     pub async fn fetch(&self, manifest: &Manifest) -> Result<LandmarkSet, ClientError> {
-        let answers = self.landmarks().await?;
+        let answers = if manifest.count == 0 { BTreeMap::new() } else { self.landmarks().await? };
         let received = answers.values().map(Vec::len).max().unwrap_or(0);
         let candidates = answers.into_values().chain([Vec::new()]);
         candidates.map(|landmarks| set_of(manifest, landmarks)).find_map(|set| set).ok_or_else(|| {
@@ -150,7 +161,23 @@ impl LandmarkClient {
         Ok(answers)
     }
 
+    /// Every reply to a query. A query that nobody was there to hear is put again: nothing was done for it.
     async fn ask(&self, key_expression: String, payload: Option<Vec<u8>>) -> Result<Vec<Reply>, ClientError> {
+        let began = Instant::now();
+        loop {
+            let replies = self.ask_once(&key_expression, payload.clone()).await?;
+            if !replies.is_empty() || began.elapsed() >= self.patience {
+                return Ok(replies);
+            }
+            tokio::time::sleep(ASK_AGAIN_AFTER).await;
+        }
+    }
+
+    async fn ask_once(
+        &self,
+        key_expression: &str,
+        payload: Option<Vec<u8>>,
+    ) -> Result<Vec<Reply>, ClientError> {
         let mut query = self
             .session
             .get(key_expression)

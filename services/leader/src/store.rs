@@ -81,7 +81,7 @@ impl Store {
         if self.shelf.borrow().is_current(&vehicle, &manifest) {
             return;
         }
-        let client = LandmarkClient::new(self.session.clone(), vehicle.clone());
+        let client = LandmarkClient::new(self.session.clone(), vehicle.clone()).without_patience();
         match client.fetch(&manifest).await {
             Ok(set) => self.file(&vehicle, set),
             Err(error) => tracing::debug!(%error, "a set was not fetched; its next manifest comes soon"),

@@ -225,6 +225,16 @@ async fn a_second_leader_of_the_vehicle_is_refused() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
+async fn an_edit_waits_a_moment_for_a_leader_that_is_just_starting() {
+    let field = Field::open().await;
+    let client = field.client().await;
+    let edit = tokio::spawn(async move { client.edit(&publish(&[landmark("red", 200.0)])).await });
+    let (leader, _shutdown) = field.lead(&field.config("state")).await.unwrap();
+    edit.await.unwrap().unwrap();
+    assert_eq!(leader.handle().landmarks().landmarks.len(), 1);
+}
+
+#[tokio::test(flavor = "multi_thread")]
 async fn without_a_leader_the_client_says_so() {
     let field = Field::open().await;
     let error = field.client().await.edit(&retire("red")).await.unwrap_err();
