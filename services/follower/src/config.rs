@@ -62,7 +62,9 @@ pub struct RecorderConfig {
     pub max_file_bytes: u64,
     /// A new file is begun after this time.
     pub max_file_s: u64,
-    /// The oldest recordings are deleted while less than this is free on the disk; 0 keeps all.
+    /// All recordings of this vehicle together; beyond it the oldest are deleted. 0 deletes nothing.
+    pub max_total_bytes: u64,
+    /// Left free on the disk: the oldest recordings make room where `max_total_bytes` is set, else recording stops.
     pub min_free_bytes: u64,
 }
 
@@ -121,6 +123,7 @@ impl Default for RecorderConfig {
             directory: PathBuf::from("recordings"),
             max_file_bytes: 4 << 30,
             max_file_s: 3600,
+            max_total_bytes: 0,
             min_free_bytes: 1 << 30,
         }
     }

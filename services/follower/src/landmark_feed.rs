@@ -55,15 +55,11 @@ impl LandmarkFeed {
     ///
     /// # Errors
     /// When the file is there and cannot be read.
-    pub(crate) fn new(
-        session: Session,
-        leader: VehicleKeys,
-        file: SetFile,
-        counters: Arc<LandmarkCounters>,
-    ) -> Result<Self, FollowerError> {
+    pub(crate) fn new(session: Session, leader: VehicleKeys, file: SetFile) -> Result<Self, FollowerError> {
         let accepted = file.load()?;
         let published = watch::Sender::new(Arc::new(accepted.set()));
         let last_heard = watch::Sender::new(None);
+        let counters = Arc::default();
         Ok(Self { session, leader, accepted, wanted: None, file, published, last_heard, counters })
     }
 
@@ -71,6 +67,12 @@ impl LandmarkFeed {
     #[must_use]
     pub(crate) fn landmarks(&self) -> watch::Receiver<Arc<LandmarkSet>> {
         self.published.subscribe()
+    }
+
+    /// What of the leader's words changed nothing.
+    #[must_use]
+    pub(crate) fn counters(&self) -> Arc<LandmarkCounters> {
+        Arc::clone(&self.counters)
     }
 
     /// When the leader was last heard.

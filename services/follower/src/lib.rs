@@ -11,7 +11,6 @@ mod counters;
 mod error;
 mod fps;
 mod intake;
-mod landmark_documents;
 mod landmark_feed;
 mod landmark_log;
 mod leader_watch;

@@ -2,11 +2,14 @@
 //! pictures stop, then the camera threads look at what they have, then the results go out, then the file is finished.
 
 use std::collections::BTreeMap;
+use std::net::SocketAddr;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use http_face::{Cameras, Events, Policy, Token};
-use recording::{Journal, JournalOptions, Report, Rotation};
+use axum::Router;
+
+use http_face::{Policy, Token};
+use recording::{Journal, JournalOptions, Report, Retention, Rotation};
 use runtime::presence::{Presence, PresencePlace};
 use runtime::{Identity, Shutdown, StateDir};
 use tokio::net::TcpListener;
@@ -17,14 +20,12 @@ use waymark_proto::keys::{Id, PresenceKey, Role, VehicleKeys};
 use zenoh::Session;
 
 use crate::config::FollowerConfig;
-use crate::counters::LandmarkCounters;
 use crate::error::FollowerError;
 use crate::landmark_feed::LandmarkFeed;
 use crate::landmark_log::LandmarkLog;
 use crate::leader_watch::LeaderWatch;
 use crate::leftovers;
-use crate::pictures_out;
-use crate::post::Post;
+use crate::post::{MannedPost, Post};
 use crate::set_file::SetFile;
 use crate::status::VehicleStatus;
 use crate::status_beacon::StatusBeacon;
@@ -33,8 +34,6 @@ use crate::web::{self, Face};
 
 /// How long the recording may take to be finished.
 const FINISH_WITHIN: Duration = Duration::from_secs(2);
-/// Events kept for a page that was away for a moment.
-const EVENTS_KEPT: usize = 1024;
 
 /// What a follower leaves behind.
 #[derive(Clone, Debug)]
@@ -58,73 +57,68 @@ pub async fn run(
 ) -> Result<FollowerReport, FollowerError> {
     let own = VehicleKeys::new(&config.fleet, &config.vehicle)?;
     let leader = VehicleKeys::new(&config.fleet, &config.leader)?;
-    let address = config.http.listen;
-    let listener =
-        TcpListener::bind(address).await.map_err(|source| FollowerError::Listen { address, source })?;
+    let listener = listen(config.http.listen).await?;
     let state = StateDir::open(&config.state_dir)?;
     let identity = Identity::on(&state);
     let _presence = announce(&session, &own, &identity).await?;
     leftovers::recover(&config.recorder.directory);
     let journal = Arc::new(Journal::start(journal_options(&config))?);
-    let landmark_counters = Arc::new(LandmarkCounters::default());
     let file = SetFile::new(state, &config.leader);
-    let feed = LandmarkFeed::new(session.clone(), leader.clone(), file, Arc::clone(&landmark_counters))?;
-    let landmarks = feed.landmarks();
-    let posts = man_posts(&config, &own, &session, &journal, &landmarks).await?;
-    let face = Arc::new(Face {
-        vehicle: config.vehicle.clone(),
-        instance: identity.instance,
-        started_at: Instant::now(),
-        session: session.clone(),
-        landmarks: landmarks.clone(),
-        leader: LeaderWatch::begin(&session, &leader, feed.last_heard()).await?,
-        stations: posts.iter().map(Post::station).collect(),
-        journal: Arc::clone(&journal),
-        cameras: Arc::new(Cameras::new(
-            config.cameras.clone(),
-            pictures_out::LAYERS,
-            &pictures_out::renderer(),
-        )),
-        events: Arc::new(Events::new(EVENTS_KEPT)),
-        landmark_counters,
-    });
+    let feed = LandmarkFeed::new(session.clone(), leader.clone(), file)?;
+    let posts = man_posts(&config, &own, &session, &journal, &feed.landmarks()).await?;
+    let watch = LeaderWatch::begin(&session, &leader, feed.last_heard()).await?;
+    let face = Arc::new(Face::new(&config, identity.instance, &session, &feed, watch, &posts, &journal));
     let beacon = StatusBeacon::declare(&session, &own, Arc::clone(&face)).await?;
-    let topics = VehicleTopics::new(&own, &leader);
-
-    let mut tasks = JoinSet::new();
-    tasks.spawn(LandmarkLog::new(Arc::clone(&journal), topics.clone()).run(landmarks));
-    tasks.spawn(beacon.run(topics, shutdown.clone()));
-    tasks.spawn({
-        let shutdown = shutdown.clone();
-        async move {
-            if let Err(error) = feed.run(shutdown).await {
-                tracing::error!(%error, "landmarks are not followed any more");
-            }
-        }
-    });
     let policy = policy(&config)?;
-    let serving = tokio::spawn({
-        let (routes, shutdown) = (web::routes(Arc::clone(&face)), shutdown.clone());
-        async move { http_face::serve(listener, routes, policy, async move { shutdown.requested().await }).await }
-    });
+
+    let topics = VehicleTopics::new(&own, &leader);
+    let mut tasks = JoinSet::new();
+    tasks.spawn(LandmarkLog::new(Arc::clone(&journal), topics.clone()).run(feed.landmarks()));
+    tasks.spawn(beacon.run(topics, shutdown.clone()));
+    tasks.spawn(follow_landmarks(feed, shutdown.clone()));
+    tasks.spawn(serve(listener, web::routes(Arc::clone(&face)), policy, shutdown.clone()));
     let mut running = Vec::new();
     for post in posts {
         running.push(post.begin(&session, &own, Arc::clone(&face)).await?);
     }
-    tracing::info!(vehicle = config.vehicle, leader = config.leader, page = %format!("http://{address}/"), "follower");
-
+    tracing::info!(vehicle = config.vehicle, leader = config.leader, page = %config.http.listen, "follower");
     shutdown.requested().await;
+    wind_up(running, tasks, &face, journal).await
+}
+
+/// Ends every part once its input has ended.
+async fn wind_up(
+    posts: Vec<MannedPost>,
+    mut tasks: JoinSet<()>,
+    face: &Face,
+    journal: Arc<Journal>,
+) -> Result<FollowerReport, FollowerError> {
     let mut failed_cameras = Vec::new();
-    for post in running {
+    for post in posts {
         failed_cameras.extend(post.finish().await);
     }
-    while tasks.join_next().await.is_some() {}
-    if let Err(error) = serving.await {
-        tracing::error!(%error, "the web face ended early");
+    while let Some(ended) = tasks.join_next().await {
+        if let Err(error) = ended {
+            tracing::error!(%error, "a part of the follower ended early");
+        }
     }
     let status = face.status().await;
     let recorder = finish(journal).await;
     Ok(FollowerReport { status, recorder, failed_cameras })
+}
+
+async fn listen(address: SocketAddr) -> Result<TcpListener, FollowerError> {
+    TcpListener::bind(address).await.map_err(|source| FollowerError::Listen { address, source })
+}
+
+async fn follow_landmarks(feed: LandmarkFeed, shutdown: Shutdown) {
+    if let Err(error) = feed.run(shutdown).await {
+        tracing::error!(%error, "landmarks are not followed any more");
+    }
+}
+
+async fn serve(listener: TcpListener, routes: Router, policy: Policy, shutdown: Shutdown) {
+    http_face::serve(listener, routes, policy, async move { shutdown.requested().await }).await;
 }
 
 async fn announce(
@@ -179,6 +173,8 @@ fn journal_options(config: &FollowerConfig) -> JournalOptions {
             max_bytes: recorder.max_file_bytes,
             max_duration: Duration::from_secs(recorder.max_file_s),
         },
+        retention: (recorder.max_total_bytes > 0)
+            .then_some(Retention { max_total_bytes: recorder.max_total_bytes }),
         free_floor_bytes: recorder.min_free_bytes,
         metadata: BTreeMap::from([
             ("versions".to_owned(), versions),

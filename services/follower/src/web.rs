@@ -15,13 +15,20 @@ use ingest::camera_thread::Registered;
 use recording::{Command, Journal};
 use tokio::sync::watch;
 use vision::LandmarkSet;
+use waymark_proto::documents::{landmark_document, set_document};
 use zenoh::Session;
 
-use crate::landmark_documents::{landmark_document, set_document};
+use crate::config::FollowerConfig;
+use crate::landmark_feed::LandmarkFeed;
 use crate::leader_watch::LeaderWatch;
 use crate::metrics;
+use crate::pictures_out;
+use crate::post::Post;
 use crate::station::Station;
 use crate::status::{RecorderStatus, RouterStatus, VehicleStatus};
+
+/// Events kept for a page that was away for a moment.
+const EVENTS_KEPT: usize = 1024;
 
 /// Everything that the routes look at; nothing of it can be changed from here but the recorder.
 pub(crate) struct Face {
@@ -57,6 +64,31 @@ pub(crate) fn routes(face: Arc<Face>) -> Router {
 }
 
 impl Face {
+    pub(crate) fn new(
+        config: &FollowerConfig,
+        instance: String,
+        session: &Session,
+        feed: &LandmarkFeed,
+        leader: LeaderWatch,
+        posts: &[Post],
+        journal: &Arc<Journal>,
+    ) -> Self {
+        let cameras = Cameras::new(config.cameras.clone(), pictures_out::LAYERS, &pictures_out::renderer());
+        Self {
+            vehicle: config.vehicle.clone(),
+            instance,
+            started_at: Instant::now(),
+            session: session.clone(),
+            landmarks: feed.landmarks(),
+            leader,
+            stations: posts.iter().map(Post::station).collect(),
+            journal: Arc::clone(journal),
+            cameras: Arc::new(cameras),
+            events: Arc::new(Events::new(EVENTS_KEPT)),
+            landmark_counters: feed.counters(),
+        }
+    }
+
     pub(crate) async fn connected(&self) -> bool {
         let info = self.session.info();
         info.routers_zid().await.next().is_some() || info.peers_zid().await.next().is_some()
