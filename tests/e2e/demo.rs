@@ -39,7 +39,7 @@ impl Demo {
             directory,
         ]);
         let _announced = program.note(&format!("http://{follower}"));
-        let face = Face::at(&format!("http://{follower}"));
+        let face = Face::at(&format!("http://{follower}")).once_reachable();
         face.json_once("/api/v1/status", is_registering);
         Self { program, face, recordings }
     }

@@ -1,12 +1,15 @@
 //! The web face of a running vehicle, as a client sees it.
 
 use std::io::{BufRead, BufReader, Read};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use ureq::{Agent, Body, http::Response};
 
 use crate::DEADLINE;
+
+/// Nobody announces the moment at which a port is opened, so it is tried again and again.
+const BETWEEN_ATTEMPTS: Duration = Duration::from_millis(50);
 
 /// A vehicle's address.
 #[derive(Clone, Debug)]
@@ -33,6 +36,20 @@ impl Face {
         let config =
             Agent::config_builder().http_status_as_error(false).timeout_global(Some(DEADLINE)).build();
         Self { root: root.trim_end_matches('/').to_owned(), agent: config.into() }
+    }
+
+    /// Waits until somebody listens: a page's address is known before its program serves it.
+    ///
+    /// # Panics
+    /// When nobody ever does.
+    #[must_use]
+    pub fn once_reachable(self) -> Self {
+        let deadline = Instant::now() + DEADLINE;
+        while let Err(error) = self.agent.get(format!("{}/livez", self.root)).call() {
+            assert!(Instant::now() < deadline, "GET {}/livez: {error}", self.root);
+            std::thread::park_timeout(BETWEEN_ATTEMPTS);
+        }
+        self
     }
 
     /// Asks for a path.

@@ -56,7 +56,7 @@ fn start_service(role: &str, endpoint: &str, directory: &Path, address: &str, mo
     let (connect, listen) = (connect(endpoint), format!("http.listen={address}"));
     let settings = [connect.as_str(), &state, &listen].into_iter().chain(more.iter().copied());
     let program = Program::start([role].into_iter().chain(settings.flat_map(|setting| ["--set", setting])));
-    let _page = program.note(&format!("http://{address}"));
+    let _page = program.note(address);
     program
 }
 
