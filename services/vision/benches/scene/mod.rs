@@ -30,13 +30,14 @@ pub(crate) fn rink(size: SizePx) -> Frame {
             .unwrap_or(if y < size.height / 4 { WALL } else { FLOORS[(3 * x / size.width) as usize % 3] });
         rgb.extend(colour.map(|level| (level + noise.next()).clamp(0, 255) as u8));
     }
-    Frame::from_rgb(size.width, size.height, rgb).unwrap()
+    Frame::from_rgb(size.width, size.height, rgb).expect("three levels for each pixel")
 }
 
 /// One colour and nothing else.
 pub(crate) fn flat(size: SizePx) -> Frame {
     let pixels = (size.width * size.height) as usize;
-    Frame::from_rgb(size.width, size.height, [202, 71, 33].repeat(pixels)).unwrap()
+    Frame::from_rgb(size.width, size.height, [202, 71, 33].repeat(pixels))
+        .expect("three levels for each pixel")
 }
 
 /// A landmark of these levels, window side and tolerances.
