@@ -10,6 +10,7 @@ use crate::landmark::Landmark;
 use crate::outcome::{Adaptation, Gate, LandmarkOutcome, Miss, Prediction, Sighting};
 use crate::predict::{Fix, Predictor};
 use crate::probe::{Stage, StageProbe};
+use crate::register::ShapeVeto;
 
 /// The first sighting of an object needs this score.
 const FIRST_SCORE: f32 = 0.30;
@@ -23,6 +24,8 @@ const FURTHER_PART: f32 = 0.75;
 const FURTHER_SIZE: f32 = 0.12;
 /// A known object below this part of the best one's score is a look-alike.
 const LOOK_ALIKE_PART: f32 = 0.6;
+/// Further objects below this score are doubtful.
+const DOUBTFUL_SCORE: f32 = 0.6;
 /// The whole frame is searched for further objects every so many frames.
 const SEARCH_EVERY: u32 = 8;
 /// Seeds looked at closely in a gate and in the whole frame.
@@ -218,7 +221,18 @@ fn welcome(
             break;
         }
         let rival = next.peek().map_or(0.0, |next| next.score);
-        let outcome = begin(scene, landmark, state, &candidate, rival, tracer);
+        let further = !state.tracks.is_empty();
+        // A doubtful one beside an object that is known must show the shape as well.
+        let veto = if further && candidate.score < DOUBTFUL_SCORE {
+            ShapeVeto::Required
+        } else {
+            scene.options.shape_veto
+        };
+        let outcome = match describe(landmark, &candidate, veto, rival, tracer) {
+            Ok(sighting) => begin(scene, landmark, state, &candidate, sighting),
+            Err(_) if further => continue,
+            Err(miss) => report::missed(landmark, state.next_instance, miss),
+        };
         best_score = best_score.max(candidate.score);
         least_score = FURTHER_SCORE;
         outcomes.push(outcome);
@@ -255,7 +269,8 @@ fn advance(
     tracer: &mut Tracer,
 ) -> LandmarkOutcome {
     let Pursuit { prediction, gate, found, rival, full_frame, elsewhere } = pursuit;
-    let outcome = match found.map(|found| (describe(scene, landmark, &found, rival, tracer), found)) {
+    let veto = scene.options.shape_veto;
+    let outcome = match found.map(|found| (describe(landmark, &found, veto, rival, tracer), found)) {
         Some((Ok(sighting), found)) => {
             track.follow(&found, fix(scene, &found));
             LandmarkOutcome {
@@ -283,13 +298,8 @@ fn begin(
     landmark: &Landmark,
     state: &mut LandmarkState,
     found: &Candidate,
-    rival: f32,
-    tracer: &mut Tracer,
+    sighting: Sighting,
 ) -> LandmarkOutcome {
-    let sighting = match describe(scene, landmark, found, rival, tracer) {
-        Ok(sighting) => sighting,
-        Err(miss) => return report::missed(landmark, state.next_instance, miss),
-    };
     let predictor = Predictor::new(scene.options.prediction, fix(scene, found));
     let instance = state.begin(predictor, found.gain, found.score).instance;
     LandmarkOutcome {
@@ -305,16 +315,16 @@ fn fix(scene: &Scene<'_>, found: &Candidate) -> Fix {
 /// All that is reported of an object.
 ///
 /// # Errors
-/// When its outline is of another shape and that was asked to rule it out.
+/// When its outline is of another shape and `veto` rules that out.
 fn describe(
-    scene: &Scene<'_>,
     landmark: &Landmark,
     found: &Candidate,
+    veto: ShapeVeto,
     rival: f32,
     tracer: &mut Tracer,
 ) -> Result<Sighting, Miss> {
     let traced = tracer.trace(&found.object, landmark.shape);
-    if scene.options.shape_veto.rules_out(traced.shape_score) {
+    if veto.rules_out(traced.shape_score) {
         return Err(Miss::WrongShape { score: traced.shape_score.unwrap_or(0.0) });
     }
     Ok(Sighting {
