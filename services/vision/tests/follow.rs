@@ -52,7 +52,7 @@ fn an_occluded_block_is_said_to_be_covered_and_taken_up_again_with_its_number() 
             assert!(found.is_empty(), "frame {k}: {:?}", found[0].1.centroid);
             covered += u32::from(matches!(outcome.landmarks[0].result, Err(Miss::Occluded { .. })));
         }
-        if k < 15 || k > 50 {
+        if !(15..=50).contains(&k) {
             assert_eq!(found.len(), 1, "frame {k}: {:?}", outcome.landmarks);
             assert_eq!(found[0].0.instance, 0, "frame {k}");
         }

@@ -64,8 +64,8 @@ pub(crate) fn picture(blocks: &[Block], gain: f32, seed: u32) -> Frame {
             }
             for block in blocks {
                 let share = block.share(x, y);
-                for c in 0..3 {
-                    color[c] += share * (f32::from(block.color[c]) - color[c]);
+                for (level, own) in color.iter_mut().zip(block.color) {
+                    *level += share * (f32::from(own) - *level);
                 }
             }
             rgb.extend(color.map(|level| (gain * level + 6.0 * noise(x, y, seed)).clamp(0.0, 255.0) as u8));
