@@ -25,7 +25,9 @@ pub enum SourceUri {
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SourceUriError {
     /// Nothing was given.
-    #[error("source is empty; name a directory or glob of pictures, a recording (FILE.mcap), sim:SCENE or zenoh:KEYEXPR")]
+    #[error(
+        "source is empty; name a directory or glob of pictures, a recording (FILE.mcap), sim:SCENE or zenoh:KEYEXPR"
+    )]
     Empty,
     /// A scheme nobody here serves.
     #[error(

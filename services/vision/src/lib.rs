@@ -11,9 +11,9 @@
 //! right, y down, so the centre of the first pixel is (0.5, 0.5); colours are 8-bit levels in the order R, G, B;
 //! variances are the population's.
 
+mod adaptive;
 pub mod bitmask;
 pub mod components;
-mod adaptive;
 pub mod doubled_grid;
 #[cfg(test)]
 mod drawn;
@@ -50,6 +50,6 @@ pub use geometry::{PointPx, RectPx, Segment, SizePx};
 pub use landmark::{ColorStats, Digest, Landmark, LandmarkSet, SetVersion, ShapeClass, WindowPx};
 pub use learn::{LearnError, LearnOptions, learn};
 pub use outcome::{Gate, LandmarkOutcome, Miss, Outcome, Prediction, Sighting};
-pub use register::{Request, ShapeVeto, Workspace, register};
 pub use probe::{NoProbe, Stage, StageProbe};
+pub use register::{Request, ShapeVeto, Workspace, register};
 pub use timestamp::Timestamp;
