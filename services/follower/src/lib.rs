@@ -33,4 +33,4 @@ mod wire;
 
 pub use config::FollowerConfig;
 pub use error::FollowerError;
-pub use run::{FollowerReport, run};
+pub use run::{FollowerReport, run, run_on};

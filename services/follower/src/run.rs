@@ -2,7 +2,6 @@
 //! pictures stop, then the camera threads look at what they have, then the results go out, then the file is finished.
 
 use std::collections::BTreeMap;
-use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -55,9 +54,24 @@ pub async fn run(
     session: Session,
     shutdown: Shutdown,
 ) -> Result<FollowerReport, FollowerError> {
+    let address = config.http.listen;
+    let listener =
+        TcpListener::bind(address).await.map_err(|source| FollowerError::Listen { address, source })?;
+    run_on(listener, config, session, shutdown).await
+}
+
+/// As [`run`], with a web face that listens already, so that its address can be told before the follower is up.
+///
+/// # Errors
+/// As [`run`].
+pub async fn run_on(
+    listener: TcpListener,
+    config: FollowerConfig,
+    session: Session,
+    shutdown: Shutdown,
+) -> Result<FollowerReport, FollowerError> {
     let own = VehicleKeys::new(&config.fleet, &config.vehicle)?;
     let leader = VehicleKeys::new(&config.fleet, &config.leader)?;
-    let listener = listen(config.http.listen).await?;
     let state = StateDir::open(&config.state_dir)?;
     let identity = Identity::on(&state);
     let _presence = announce(&session, &own, &identity).await?;
@@ -105,10 +119,6 @@ async fn wind_up(
     let status = face.status().await;
     let recorder = finish(journal).await;
     Ok(FollowerReport { status, recorder, failed_cameras })
-}
-
-async fn listen(address: SocketAddr) -> Result<TcpListener, FollowerError> {
-    TcpListener::bind(address).await.map_err(|source| FollowerError::Listen { address, source })
 }
 
 async fn follow_landmarks(feed: LandmarkFeed, shutdown: Shutdown) {

@@ -1,6 +1,6 @@
 //! The convoy itself: who is started, who connects to whom, and in which order they end.
 
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::net::{Ipv4Addr, SocketAddr};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -12,6 +12,7 @@ use anyhow::Context;
 use leader::Edit;
 use runtime::identity::unix_time_ns;
 use runtime::{SessionSettings, Shutdown};
+use tokio::net::TcpListener;
 use tokio::task::JoinHandle;
 use vision::Landmark;
 use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
@@ -57,10 +58,11 @@ impl Convoy {
         lesson: Vec<Landmark>,
         interrupted: &Shutdown,
     ) -> anyhow::Result<Self> {
-        let loopback = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
-        let endpoint = format!("tcp/{}", with_port(loopback).context("no free TCP port on 127.0.0.1")?);
-        let follower_page = with_port(args.listen)
+        let endpoint = free_endpoint().context("no free TCP port on 127.0.0.1")?;
+        let listener = TcpListener::bind(args.listen)
+            .await
             .with_context(|| format!("--listen {} cannot be bound; choose another address", args.listen))?;
+        let follower_page = listener.local_addr()?;
         let mut sessions = vec![SessionSettings::router(&endpoint).open().await?];
         for _ in 0..5 {
             sessions.push(SessionSettings::client(&endpoint).open().await?);
@@ -78,7 +80,8 @@ impl Convoy {
         let judge = Judge::begin(for_judge).await?;
         let pages = (page(follower_page), page(leader.page()));
         let config = follower_config(args, follower_page, state.path());
-        let follower = tokio::spawn(::follower::run(config, for_follower.clone(), parts.clone()));
+        let follower =
+            tokio::spawn(::follower::run_on(listener, config, for_follower.clone(), parts.clone()));
         let camera = |vehicle: &str, number, session: &Session| {
             tokio::spawn(::camera::run(
                 camera_config(args, vehicle, number),
@@ -243,9 +246,10 @@ fn camera_config(args: &Args, vehicle: &str, number: u32) -> CameraConfig {
     }
 }
 
-/// The same address; with a port that nobody listened on a moment ago where it has none.
-fn with_port(address: SocketAddr) -> std::io::Result<SocketAddr> {
-    TcpListener::bind(address)?.local_addr()
+/// A router's endpoint on a port that nobody listened on a moment ago.
+fn free_endpoint() -> std::io::Result<String> {
+    let listener = std::net::TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
+    Ok(format!("tcp/{}", listener.local_addr()?))
 }
 
 fn page(address: SocketAddr) -> String {
