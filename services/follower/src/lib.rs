@@ -1,6 +1,6 @@
 //! Registration of the leader's landmarks in live cameras.
 //!
-//! Pictures come in over Zenoh ([`run`] puts it all together), each camera's own thread looks at the newest one, and
+//! Pictures come in over Zenoh ([`run()`] puts it all together), each camera's own thread looks at the newest one, and
 //! what it saw goes to the journal, to Zenoh, and to whoever looks at the page. Landmarks are what the leader says
 //! they are ([`accepted`]); every picture and every loss is counted.
 

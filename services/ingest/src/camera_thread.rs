@@ -177,10 +177,10 @@ pub fn decode(picture: &EncodedFrame) -> Result<Frame, DecodeError> {
     decode_into(picture, Vec::new())
 }
 
-/// As [`decode`], into the pixel storage of an earlier frame.
+/// As [`decode()`], into the pixel storage of an earlier frame.
 ///
 /// # Errors
-/// As [`decode`].
+/// As [`decode()`].
 pub fn decode_into(picture: &EncodedFrame, pixels: Vec<u8>) -> Result<Frame, DecodeError> {
     let limits = DecodeLimits::default();
     match &picture.encoding {

@@ -1,7 +1,7 @@
 //! The landmark set, published to Zenoh with a manifest, and its web face.
 //!
-//! [`book`] decides what the set is, [`memory`] keeps it from one start to the next, [`publication`] turns it into
-//! messages, [`answers`] gives them to whoever asks and [`announcements`] to whoever listens; [`run`] puts them
+//! `book` decides what the set is, `memory` keeps it from one start to the next, `publication` turns it into
+//! messages, `answers` gives them to whoever asks and `announcements` to whoever listens; [`run()`] puts them
 //! together. [`client`] is the other side: what the command line says to a running leader. [`store`] remembers the sets of
 //! all leaders for a router.
 

@@ -1,8 +1,8 @@
 //! A landmark descriptor from one or several pictures of the object.
 //!
 //! A region is the object's bounding box. Its corners show background and its face may carry lettering, so the
-//! object's own colours are told from both before the six statistics are taken ([`object`]); the statistics and the
-//! spread that the tolerances must cover come from windows that lie wholly on the object ([`windows`]).
+//! object's own colours are told from both before the six statistics are taken (`object`); the statistics and the
+//! spread that the tolerances must cover come from windows that lie wholly on the object (`windows`).
 
 mod object;
 mod windows;
