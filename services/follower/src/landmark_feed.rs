@@ -9,7 +9,9 @@ use runtime::shutdown::Shutdown;
 use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval};
 use vision::{Landmark, LandmarkSet};
+use waymark_proto::attachment::Attachment;
 use waymark_proto::convert::Manifest;
+use waymark_proto::gaps::GapCounter;
 use waymark_proto::keys::VehicleKeys;
 use zenoh::Session;
 use zenoh::qos::CongestionControl;
@@ -35,8 +37,17 @@ enum Heard {
     Manifest(Sample),
 }
 
-/// When the leader was last heard; `None` before the first time.
-pub(crate) type LastHeard = watch::Receiver<Option<Instant>>;
+/// How the leader is heard.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LeaderHeard {
+    /// When last.
+    pub(crate) at: Instant,
+    /// Manifests that it sent and that did not arrive, by the gaps in their sequence; `None` while nothing can be said.
+    pub(crate) missed: Option<u64>,
+}
+
+/// How the leader was last heard; `None` before the first time.
+pub(crate) type LastHeard = watch::Receiver<Option<LeaderHeard>>;
 
 /// A follower's side of the landmark set.
 pub(crate) struct LandmarkFeed {
@@ -46,7 +57,8 @@ pub(crate) struct LandmarkFeed {
     wanted: Option<Manifest>,
     file: SetFile,
     published: watch::Sender<Arc<LandmarkSet>>,
-    last_heard: watch::Sender<Option<Instant>>,
+    last_heard: watch::Sender<Option<LeaderHeard>>,
+    gaps: GapCounter,
     counters: Arc<LandmarkCounters>,
 }
 
@@ -60,7 +72,8 @@ impl LandmarkFeed {
         let published = watch::Sender::new(Arc::new(accepted.set()));
         let last_heard = watch::Sender::new(None);
         let counters = Arc::default();
-        Ok(Self { session, leader, accepted, wanted: None, file, published, last_heard, counters })
+        let gaps = GapCounter::default();
+        Ok(Self { session, leader, accepted, wanted: None, file, published, last_heard, gaps, counters })
     }
 
     /// The set in force, now and as it changes.
@@ -136,7 +149,12 @@ impl LandmarkFeed {
     }
 
     async fn hear(&mut self, heard: Heard) {
-        self.last_heard.send_replace(Some(Instant::now()));
+        if let Heard::Manifest(sample) = &heard {
+            let attachment = sample.attachment().map(|bytes| Attachment::from_bytes(&bytes.to_bytes()));
+            self.gaps.observe(attachment.and_then(Result::ok).as_ref());
+        }
+        let missed = self.gaps.missed();
+        self.last_heard.send_replace(Some(LeaderHeard { at: Instant::now(), missed }));
         match heard {
             // A retired landmark leaves with the manifest that lacks it.
             Heard::Landmark(sample) if sample.kind() == SampleKind::Delete => {}

@@ -1,12 +1,9 @@
 //! Whether the leader is there, and when it was last heard.
 
-use std::collections::BTreeSet;
-
-use tokio::sync::watch;
+use runtime::presence::TokenWatch;
+use runtime::session::LEASE;
 use waymark_proto::keys::{PresenceKey, Role, VehicleKeys};
 use zenoh::Session;
-use zenoh::pubsub::Subscriber;
-use zenoh::sample::SampleKind;
 
 use crate::error::FollowerError;
 use crate::landmark_feed::LastHeard;
@@ -15,9 +12,8 @@ use crate::status::LeaderStatus;
 /// Watches the liveliness tokens of one vehicle in the role of leader.
 pub(crate) struct LeaderWatch {
     vehicle: String,
-    tokens: watch::Receiver<BTreeSet<String>>,
+    tokens: TokenWatch,
     last_heard: LastHeard,
-    _subscriber: Subscriber<()>,
 }
 
 impl LeaderWatch {
@@ -27,29 +23,22 @@ impl LeaderWatch {
         leader: &VehicleKeys,
         last_heard: LastHeard,
     ) -> Result<Self, FollowerError> {
-        let (sender, tokens) = watch::channel(BTreeSet::new());
         let key = PresenceKey::of_role(leader.fleet(), leader.vehicle(), Role::Leader);
-        let subscriber = session
-            .liveliness()
-            .declare_subscriber(key)
-            .history(true)
-            .callback(move |sample| {
-                let token = sample.key_expr().as_str().to_owned();
-                sender.send_modify(|tokens| match sample.kind() {
-                    SampleKind::Put => drop(tokens.insert(token)),
-                    SampleKind::Delete => drop(tokens.remove(&token)),
-                });
-            })
-            .await
-            .map_err(FollowerError::zenoh("watching for the leader"))?;
-        Ok(Self { vehicle: leader.vehicle().to_string(), tokens, last_heard, _subscriber: subscriber })
+        let watching = TokenWatch::begin(session, &key).await;
+        let tokens = watching.map_err(FollowerError::zenoh("watching for the leader"))?;
+        Ok(Self { vehicle: leader.vehicle().to_string(), tokens, last_heard })
     }
 
+    /// A token outlives its process where that has only stopped, and a manifest comes every second: whoever was not
+    /// heard for a lease is gone, whatever its token says.
     pub(crate) fn status(&self) -> LeaderStatus {
+        let heard = *self.last_heard.borrow();
+        let silent = heard.is_some_and(|heard| heard.at.elapsed() > LEASE);
         LeaderStatus {
             vehicle: self.vehicle.clone(),
-            present: !self.tokens.borrow().is_empty(),
-            age_s: self.last_heard.borrow().map(|heard| heard.elapsed().as_secs_f64()),
+            present: !silent && !self.tokens.tokens().borrow().is_empty(),
+            age_s: heard.map(|heard| heard.at.elapsed().as_secs_f64()),
+            missed: heard.and_then(|heard| heard.missed),
         }
     }
 }

@@ -47,6 +47,7 @@ fn vehicle(status: &VehicleStatus) {
     gauge!("waymark_uptime_seconds").set(status.uptime_s);
     gauge!("waymark_landmarks").set(status.landmarks as f64);
     gauge!("waymark_leader_present").set(yes(status.leader.present));
+    counter!("waymark_leader_missed_manifests_total").absolute(status.leader.missed.unwrap_or(0));
     gauge!("waymark_router_connected").set(yes(status.router.connected));
     gauge!("waymark_recorder_failed").set(yes(status.recorder.state == "failed"));
     gauge!("waymark_recorder_file_bytes").set(status.recorder.bytes as f64);

@@ -48,7 +48,8 @@ pub struct FollowerReport {
 /// Runs a follower until `shutdown`.
 ///
 /// # Errors
-/// When something that it needs from the start is not to be had; what fails later is counted and shown instead.
+/// When something that it needs from the start is not to be had, or it had to give way to another follower of the same
+/// vehicle; what fails later is counted and shown instead.
 pub async fn run(
     config: FollowerConfig,
     session: Session,
@@ -74,7 +75,7 @@ pub async fn run_on(
     let leader = VehicleKeys::new(&config.fleet, &config.leader)?;
     let state = StateDir::open(&config.state_dir)?;
     let identity = Identity::on(&state);
-    let _presence = announce(&session, &own, &identity).await?;
+    let presence = announce(&session, &own, &identity).await?;
     leftovers::recover(&config.recorder.directory);
     let journal = Arc::new(Journal::start(journal_options(&config))?);
     let file = SetFile::new(state, &config.leader);
@@ -96,8 +97,9 @@ pub async fn run_on(
         running.push(post.begin(&session, &own, Arc::clone(&face)).await?);
     }
     tracing::info!(vehicle = config.vehicle, leader = config.leader, page = %config.http.listen, "follower");
-    shutdown.requested().await;
-    wind_up(running, tasks, &face, journal).await
+    let ((), superseded) = presence.hold(shutdown.requested(), &shutdown).await;
+    let report = wind_up(running, tasks, &face, journal).await?;
+    superseded.map_or(Ok(report), |first| Err(first.into()))
 }
 
 /// Ends every part once its input has ended.

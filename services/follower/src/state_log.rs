@@ -82,7 +82,7 @@ mod tests {
             role: "follower",
             version: "1",
             uptime_s: 1.0,
-            leader: LeaderStatus { vehicle: "lead".into(), present: true, age_s: None },
+            leader: LeaderStatus { vehicle: "lead".into(), present: true, age_s: None, missed: None },
             router: RouterStatus { connected: true },
             landmarks: 2,
             cameras: Vec::new(),

@@ -32,10 +32,12 @@ pub struct VehicleStatus {
 pub struct LeaderStatus {
     /// The followed vehicle's id.
     pub vehicle: String,
-    /// Whether its liveliness token is there.
+    /// Whether its liveliness token is there, and it was heard within a lease.
     pub present: bool,
     /// Seconds since it was last heard.
     pub age_s: Option<f64>,
+    /// Manifests that it sent and that did not arrive, by the gaps in their sequence.
+    pub missed: Option<u64>,
 }
 
 /// The way to the others.

@@ -1,6 +1,7 @@
 //! What a leader says unasked: landmarks as they change, the manifest, its status.
 
-use std::time::Duration;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use runtime::identity::unix_time_ns;
 use waymark_proto::attachment::Stamper;
@@ -18,6 +19,7 @@ use zenoh_ext::{
 use crate::book::Change;
 use crate::error::LeaderError;
 use crate::publication::{Publication, landmark_key};
+use crate::put_times::PutTimes;
 
 const HEARTBEAT: Duration = Duration::from_secs(1);
 
@@ -29,10 +31,15 @@ pub(crate) struct Announcements {
     landmark_stamper: Stamper,
     manifest_stamper: Stamper,
     status_stamper: Stamper,
+    times: Arc<PutTimes>,
 }
 
 impl Announcements {
-    pub(crate) async fn declare(session: &Session, keys: &VehicleKeys) -> Result<Self, LeaderError> {
+    pub(crate) async fn declare(
+        session: &Session,
+        keys: &VehicleKeys,
+        times: Arc<PutTimes>,
+    ) -> Result<Self, LeaderError> {
         let replies = RepliesConfig::default()
             .congestion_control(CongestionControl::Drop)
             .priority(Priority::InteractiveHigh);
@@ -55,6 +62,7 @@ impl Announcements {
             landmark_stamper: stamper(),
             manifest_stamper: stamper(),
             status_stamper: stamper(),
+            times,
         })
     }
 
@@ -85,54 +93,55 @@ impl Announcements {
     /// Tells what the set is; said every second, so that a lost landmark is noticed within one.
     pub(crate) async fn say_manifest(&self, publication: &Publication) {
         let attachment = self.manifest_stamper.stamp(unix_time_ns()).to_bytes();
-        let said = self.manifest.put(publication.manifest.clone()).attachment(attachment.as_slice()).await;
-        unsaid(said, "manifest");
+        let put = self.manifest.put(publication.manifest.clone()).attachment(attachment.as_slice());
+        self.said("manifest", put).await;
     }
 
     /// Tells how this vehicle is.
     pub(crate) async fn say_status(&self, status: &v1::VehicleStatus) {
         use prost::Message as _;
-        let said = self
+        let put = self
             .session
             .put(self.keys.status(), status.encode_to_vec())
             .encoding(Encoding::from(v1::VehicleStatus::encoding()))
             .congestion_control(CongestionControl::Drop)
             .priority(Priority::Background)
             .reliability(Reliability::BestEffort)
-            .attachment(self.status_stamper.stamp(status.sent_at_ns).to_bytes().as_slice())
-            .await;
-        unsaid(said, "status");
+            .attachment(self.status_stamper.stamp(status.sent_at_ns).to_bytes().as_slice());
+        self.said("status", put).await;
     }
 
     async fn put_landmark(&self, key: &KeyExpr<'static>, payload: ZBytes) {
-        let said = self
+        let put = self
             .session
             .put(key, payload)
             .encoding(Encoding::from(v1::Landmark::encoding()))
             .congestion_control(CongestionControl::Drop)
             .priority(Priority::InteractiveHigh)
             .reliability(Reliability::Reliable)
-            .attachment(self.landmark_stamper.stamp(unix_time_ns()).to_bytes().as_slice())
-            .await;
-        unsaid(said, "landmark");
+            .attachment(self.landmark_stamper.stamp(unix_time_ns()).to_bytes().as_slice());
+        self.said("landmark", put).await;
     }
 
     async fn delete_landmark(&self, key: &KeyExpr<'static>) {
-        let said = self
+        let delete = self
             .session
             .delete(key)
             .congestion_control(CongestionControl::Drop)
             .priority(Priority::InteractiveHigh)
             .reliability(Reliability::Reliable)
-            .attachment(self.landmark_stamper.stamp(unix_time_ns()).to_bytes().as_slice())
-            .await;
-        unsaid(said, "retirement");
+            .attachment(self.landmark_stamper.stamp(unix_time_ns()).to_bytes().as_slice());
+        self.said("retirement", delete).await;
     }
-}
 
-/// A closed session says nothing more; whoever closed it knows.
-fn unsaid(said: zenoh::Result<()>, what: &'static str) {
-    if let Err(error) = said {
-        tracing::debug!(%error, what, "not said");
+    /// Says it, and takes note of how long that took.
+    async fn said(&self, what: &'static str, put: impl IntoFuture<Output = zenoh::Result<()>>) {
+        let began = Instant::now();
+        let said = put.await;
+        self.times.took(began.elapsed());
+        if let Err(error) = said {
+            // A closed session says nothing more; whoever closed it knows.
+            tracing::debug!(%error, what, "not said");
+        }
     }
 }

@@ -14,6 +14,7 @@ pub mod error;
 pub mod landmark_files;
 mod memory;
 mod publication;
+mod put_times;
 mod run;
 mod status;
 pub mod store;

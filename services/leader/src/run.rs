@@ -26,6 +26,7 @@ use crate::error::LeaderError;
 use crate::landmark_files::read_landmarks;
 use crate::memory::Memory;
 use crate::publication::Publication;
+use crate::put_times::PutTimes;
 use crate::status::EditCounts;
 use crate::web::{self, Face};
 
@@ -45,20 +46,21 @@ pub struct LeaderReport {
 /// Runs a leader until `shutdown`.
 ///
 /// # Errors
-/// When something that it needs from the start is not to be had.
+/// When something that it needs from the start is not to be had, or it had to give way to another leader of the same
+/// vehicle.
 pub async fn run(
     config: LeaderConfig,
     session: Session,
     shutdown: Shutdown,
 ) -> Result<LeaderReport, LeaderError> {
-    Ok(Leader::start(&config, session, shutdown).await?.finished().await)
+    Leader::start(&config, session, shutdown).await?.finished().await
 }
 
 /// A running leader.
 pub struct Leader {
     handle: LeaderHandle,
     page: SocketAddr,
-    task: JoinHandle<LeaderReport>,
+    task: JoinHandle<Result<LeaderReport, LeaderError>>,
 }
 
 /// Changes a running leader's set from within its process.
@@ -112,15 +114,17 @@ impl Leader {
         let (queries_in, queries) = mpsc::channel(WAITING_EDITS);
         let (requests_in, requests) = mpsc::channel(WAITING_EDITS);
         let (edits, edits_seen) = watch::channel(EditCounts::default());
+        let put_times = Arc::new(PutTimes::default());
         let face = Arc::new(Face {
             vehicle: config.vehicle.clone(),
             identity,
             session: session.clone(),
             publications: published.clone(),
             edits: edits_seen,
+            put_times: Arc::clone(&put_times),
         });
         let answers = Answers::declare(&session, &keys, published.clone(), queries_in).await?;
-        let announcements = Announcements::declare(&session, &keys).await?;
+        let announcements = Announcements::declare(&session, &keys, put_times).await?;
         announcements.say_all(&published.borrow().clone()).await;
         let serving = tokio::spawn({
             let (routes, shutdown) = (web::routes(Arc::clone(&face)), shutdown.clone());
@@ -130,12 +134,13 @@ impl Leader {
         });
         let desk = Desk { keys, book, memory, announcements, publications, edits, face };
         let task = tokio::spawn(async move {
-            let report = desk.work(queries, requests, &shutdown).await;
+            let work = desk.work(queries, requests, &shutdown);
+            let (report, superseded) = presence.hold(work, &shutdown).await;
             if let Err(error) = serving.await {
                 tracing::error!(%error, "the web face ended early");
             }
             drop((answers, presence));
-            report
+            superseded.map_or(Ok(report), |first| Err(first.into()))
         });
         tracing::info!(vehicle = config.vehicle, page = %format!("http://{page}/"), "leader");
         Ok(Self { handle: LeaderHandle { requests: requests_in, publications: published }, page, task })
@@ -154,15 +159,15 @@ impl Leader {
     }
 
     /// Waits until the leader has ended.
-    pub async fn finished(self) -> LeaderReport {
+    ///
+    /// # Errors
+    /// When it had to give way to another leader of the same vehicle.
+    pub async fn finished(self) -> Result<LeaderReport, LeaderError> {
         let Self { handle, task, .. } = self;
-        match task.await {
-            Ok(report) => report,
-            Err(error) => {
-                tracing::error!(%error, "the leader ended early");
-                LeaderReport { set: handle.landmarks(), edits: EditCounts::default() }
-            }
-        }
+        task.await.unwrap_or_else(|error| {
+            tracing::error!(%error, "the leader ended early");
+            Ok(LeaderReport { set: handle.landmarks(), edits: EditCounts::default() })
+        })
     }
 }
 

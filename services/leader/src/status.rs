@@ -3,6 +3,8 @@
 use serde::Serialize;
 use waymark_proto::v1;
 
+use crate::put_times::PutStatus;
+
 /// What a leader says of itself.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct LeaderStatus {
@@ -24,6 +26,8 @@ pub(crate) struct LeaderStatus {
     pub(crate) set: SetStatus,
     /// Changes asked for since the start, by what came of them.
     pub(crate) edits: EditCounts,
+    /// What its own puts take.
+    pub(crate) puts: PutStatus,
     /// A leader looks through no camera.
     pub(crate) cameras: [(); 0],
 }

@@ -5,11 +5,14 @@
 
 mod shelf;
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use runtime::reply::{Answer, reply};
 use runtime::{Shutdown, StateDir};
 use tokio::sync::{mpsc, watch};
+use tokio::task::{self, JoinSet};
+use vision::LandmarkSet;
 use waymark_proto::convert::{Manifest, manifest_from_wire};
 use waymark_proto::keys::{Key, Resource, VehicleKeys};
 use waymark_proto::payload::WireMessage;
@@ -20,12 +23,14 @@ use zenoh::pubsub::Subscriber;
 use zenoh::query::{Query, Queryable};
 use zenoh::sample::{Locality, Sample};
 
-use crate::client::LandmarkClient;
+use crate::client::{ClientError, LandmarkClient};
 use crate::error::LeaderError;
 use crate::publication::key_expr;
 use shelf::Filed;
 pub use shelf::Shelf;
 
+/// Sets that are fetched at a time: one leader that does not answer holds up none of the others.
+const FETCHES_AT_A_TIME: usize = 8;
 /// Manifests that may wait; one that finds no room comes again within the second.
 const WAITING_MANIFESTS: usize = 256;
 
@@ -68,27 +73,28 @@ impl Store {
 
     /// Learns and answers until shutdown.
     pub async fn run(mut self, shutdown: Shutdown) {
+        let mut fetches = Fetches::default();
         loop {
             tokio::select! {
                 () = shutdown.requested() => return,
-                Some(sample) = self.heard.recv() => self.hear(&sample).await,
+                Some(sample) = self.heard.recv() => self.hear(&sample, &mut fetches),
+                ended = fetches.ended() => if let Some((vehicle, set)) = ended {
+                    self.file(&vehicle, set);
+                },
             }
         }
     }
 
-    async fn hear(&self, sample: &Sample) {
+    fn hear(&self, sample: &Sample, fetches: &mut Fetches) {
         let Some((vehicle, manifest)) = manifest_of_sample(sample) else { return };
-        if self.shelf.borrow().is_current(&vehicle, &manifest) {
+        if self.shelf.borrow().is_current(&vehicle, &manifest) || !fetches.have_room_for(&vehicle) {
             return;
         }
         let client = LandmarkClient::new(self.session.clone(), vehicle.clone()).without_patience();
-        match client.fetch(&manifest).await {
-            Ok(set) => self.file(&vehicle, set),
-            Err(error) => tracing::debug!(%error, "a set was not fetched; its next manifest comes soon"),
-        }
+        fetches.begin(vehicle, async move { client.fetch(&manifest).await });
     }
 
-    fn file(&self, vehicle: &VehicleKeys, set: vision::LandmarkSet) {
+    fn file(&self, vehicle: &VehicleKeys, set: LandmarkSet) {
         let name = format!("{}/{}", vehicle.fleet(), vehicle.vehicle());
         let (epoch, version, landmarks) = (set.version.epoch, set.version.version, set.landmarks.len());
         if let Err(error) = shelf::write(&self.state, vehicle, &set) {
@@ -103,6 +109,40 @@ impl Store {
             }
             Err(error) => tracing::warn!(%error, vehicle = name, "landmark set not kept"),
         }
+    }
+}
+
+/// Sets on their way, at most one of each vehicle.
+#[derive(Default)]
+struct Fetches {
+    running: JoinSet<Result<LandmarkSet, ClientError>>,
+    vehicles: HashMap<task::Id, VehicleKeys>,
+}
+
+impl Fetches {
+    /// A vehicle for which there is no room says its manifest again within the second.
+    fn have_room_for(&self, vehicle: &VehicleKeys) -> bool {
+        self.running.len() < FETCHES_AT_A_TIME && self.vehicles.values().all(|fetched| fetched != vehicle)
+    }
+
+    fn begin<F>(&mut self, vehicle: VehicleKeys, fetch: F)
+    where
+        F: Future<Output = Result<LandmarkSet, ClientError>> + Send + 'static,
+    {
+        self.vehicles.insert(self.running.spawn(fetch).id(), vehicle);
+    }
+
+    /// Waits until one has ended, and returns what it brought; pending while none is on its way.
+    async fn ended(&mut self) -> Option<(VehicleKeys, LandmarkSet)> {
+        let Some(ended) = self.running.join_next_with_id().await else { return std::future::pending().await };
+        let (id, fetched) = match ended {
+            Ok((id, fetched)) => (id, fetched.map_err(|error| error.to_string())),
+            Err(error) => (error.id(), Err(error.to_string())),
+        };
+        let vehicle = self.vehicles.remove(&id)?;
+        let not_fetched =
+            |error| tracing::debug!(error, "a set was not fetched; its next manifest comes soon");
+        Some((vehicle, fetched.map_err(not_fetched).ok()?))
     }
 }
 

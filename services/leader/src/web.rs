@@ -17,6 +17,7 @@ use waymark_proto::documents::{landmark_document, set_document};
 use zenoh::Session;
 
 use crate::publication::Publication;
+use crate::put_times::PutTimes;
 use crate::status::{EditCounts, LeaderStatus, RouterStatus, SetStatus};
 
 /// Everything that the routes look at.
@@ -26,6 +27,7 @@ pub(crate) struct Face {
     pub(crate) session: Session,
     pub(crate) publications: watch::Receiver<Publication>,
     pub(crate) edits: watch::Receiver<EditCounts>,
+    pub(crate) put_times: Arc<PutTimes>,
 }
 
 type Shared = State<Arc<Face>>;
@@ -57,6 +59,7 @@ impl Face {
             landmarks: set.landmarks.len(),
             set: SetStatus { epoch: set.version.epoch, version: set.version.version },
             edits: *self.edits.borrow(),
+            puts: self.put_times.status(),
             cameras: [],
         }
     }
@@ -89,6 +92,9 @@ async fn metrics(State(face): Shared, Extension(refusals): Extension<Arc<Counter
         gauge!("waymark_router_connected").set(f64::from(u8::from(status.router.connected)));
         counter!("waymark_landmark_edits_total", "result" => "made").absolute(status.edits.made);
         counter!("waymark_landmark_edits_total", "result" => "refused").absolute(status.edits.refused);
+        counter!("waymark_puts_total").absolute(status.puts.count);
+        gauge!("waymark_put_seconds_median").set(status.puts.median_ms * 1e-3);
+        gauge!("waymark_put_seconds_longest").set(status.puts.longest_ms * 1e-3);
         for (reason, count) in refusals.by_reason() {
             counter!("waymark_http_refused_total", "reason" => reason).absolute(count);
         }

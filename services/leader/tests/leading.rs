@@ -138,7 +138,7 @@ async fn a_late_joiner_is_told_the_set_and_every_edit_changes_it() {
     assert_eq!(ids(&client.list().await.unwrap()), [("green".into(), 1)]);
 
     shutdown.request();
-    let report = timeout(LONG, leader.finished()).await.unwrap();
+    let report = timeout(LONG, leader.finished()).await.unwrap().unwrap();
     assert_eq!((report.edits.made, report.edits.refused), (3, 0));
 }
 
@@ -189,7 +189,7 @@ async fn a_restart_keeps_the_set_in_a_higher_epoch() {
     let (leader, shutdown) = field.lead(&field.config("state")).await.unwrap();
     leader.handle().edit(publish(&[landmark("red", 200.0)])).await.unwrap();
     shutdown.request();
-    timeout(LONG, leader.finished()).await.unwrap();
+    timeout(LONG, leader.finished()).await.unwrap().unwrap();
     let (leader, _shutdown) = field.lead(&field.config("state")).await.unwrap();
     let set = leader.handle().landmarks();
     assert_eq!((set.version.epoch, set.landmarks.len()), (2, 1));
@@ -264,7 +264,7 @@ async fn the_web_face_shows_the_set_and_the_status() {
     assert!(status.contains("\"role\":\"leader\"") && status.contains("\"landmarks\":1"), "{status}");
     assert!(get("/metrics").await.contains("waymark_landmarks 1"));
     shutdown.request();
-    timeout(LONG, leader.finished()).await.unwrap();
+    timeout(LONG, leader.finished()).await.unwrap().unwrap();
 }
 
 fn write_files(directory: &Path, landmarks: &[Landmark]) {

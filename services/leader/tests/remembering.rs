@@ -87,7 +87,7 @@ async fn the_sets_of_leaders_that_left_are_answered_for() {
     let published = leader.handle().landmarks();
     router.keeps(2).await;
     shutdown.request();
-    timeout(LONG, leader.finished()).await.unwrap();
+    timeout(LONG, leader.finished()).await.unwrap().unwrap();
     session.close().await.unwrap();
     assert_eq!(client().await.list().await.unwrap(), *published);
 

@@ -8,6 +8,11 @@
 //! An answer from the same machine is passed over. The caller holds that machine's state directory
 //! ([`crate::StateDir`]), which the kernel gives to one process at a time: whoever answers from there has let go of
 //! it and is about to end. So a restart takes over without waiting.
+//!
+//! Two that could not hear each other are both established. Once they can, each sees the other's token, and the rule
+//! for two that start together decides who leaves: [`Presence::superseded`].
+
+mod tokens;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,11 +29,21 @@ use zenoh::query::{ConsolidationMode, Query, QueryTarget, Queryable};
 use crate::clock::{ClockOffset, Exchange, best_offset};
 use crate::identity::{Identity, unix_time_ns};
 use crate::reply::{Answer, reply};
+use crate::session::is_router_connected;
+use crate::shutdown::Shutdown;
+pub use tokens::TokenWatch;
 
 /// How long others have to answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(1);
-/// Times the question is put: it is sent with Drop, so it may be lost.
-const CLAIM_ROUNDS: usize = 2;
+/// Times the question is put: it is sent with Drop, so it may be lost, and who has just connected does not know the
+/// way to everybody at once.
+const CLAIM_ROUNDS: usize = 3;
+/// Pause between two questions.
+const BETWEEN_ROUNDS: Duration = Duration::from_millis(100);
+/// How long the first question waits for somebody to be connected; a vehicle starts without any.
+const CONNECTED_WITHIN: Duration = Duration::from_secs(1);
+/// How often a sibling that is announced and did not answer is asked again.
+const ASK_SIBLINGS_EVERY: Duration = Duration::from_secs(5);
 /// Exchanges that a clock offset is measured with.
 const CLOCK_EXCHANGES: usize = 5;
 
@@ -90,6 +105,11 @@ pub enum PresenceError {
 
 /// A process that is announced; it vanishes from the others' sight when this is dropped.
 pub struct Presence {
+    session: Session,
+    place: PresencePlace,
+    own: Introduction,
+    /// Tokens of vehicle and role, this process's own among them.
+    siblings: TokenWatch,
     _token: LivelinessToken,
     _answers: Queryable<()>,
 }
@@ -110,17 +130,82 @@ impl Presence {
         let own = introduction(identity, version);
         let answers =
             declare_answers(session, place, own.clone(), Arc::clone(&established)).await.map_err(refused)?;
-        for _ in 0..CLAIM_ROUNDS {
-            let others = ask(session, &place.siblings).await.map_err(refused)?;
-            if let Some((first, _)) = others.into_iter().find(|(other, _)| gives_way(&own, other)) {
+        // Whoever is not connected by then starts alone, and may have to leave once it is.
+        let _may_be_alone = tokio::time::timeout(CONNECTED_WITHIN, until_connected(session)).await;
+        for round in 0..CLAIM_ROUNDS {
+            if round > 0 {
+                tokio::time::sleep(BETWEEN_ROUNDS).await;
+            }
+            if let Some(first) = first_before(session, place, &own).await.map_err(refused)? {
                 let place = place.siblings.clone();
                 return Err(PresenceError::AlreadyPresent { place, first: Box::new(first) });
             }
         }
         established.store(true, Ordering::Release);
         let token = session.liveliness().declare_token(&place.own_key).await.map_err(refused)?;
-        Ok(Self { _token: token, _answers: answers })
+        let siblings = TokenWatch::begin(session, &place.siblings).await.map_err(refused)?;
+        Ok(Self {
+            session: session.clone(),
+            place: place.clone(),
+            own: Introduction { established: true, ..own },
+            siblings,
+            _token: token,
+            _answers: answers,
+        })
     }
+
+    /// Runs `work`, which ends after `shutdown`, and requests that when this process has to give way to another one.
+    /// Returns the other one as an error, if that is how it came.
+    pub async fn hold<W: Future>(&self, work: W, shutdown: &Shutdown) -> (W::Output, Option<PresenceError>) {
+        let mut work = std::pin::pin!(work);
+        let first = tokio::select! {
+            ended = &mut work => return (ended, None),
+            first = self.superseded() => first,
+        };
+        tracing::warn!(%first, "ending");
+        shutdown.request();
+        (work.await, Some(first))
+    }
+
+    /// Completes when another established process of the same vehicle and role was met to which this one has to give
+    /// way; the error names it. As long as there is none, this waits.
+    pub async fn superseded(&self) -> PresenceError {
+        let mut tokens = self.siblings.tokens();
+        loop {
+            let met = tokens.borrow_and_update().iter().any(|token| *token != self.place.own_key);
+            if met {
+                match first_before(&self.session, &self.place, &self.own).await {
+                    Ok(Some(first)) => {
+                        let place = self.place.siblings.clone();
+                        return PresenceError::AlreadyPresent { place, first: Box::new(first) };
+                    }
+                    Ok(None) => {}
+                    Err(error) => tracing::debug!(%error, "a sibling cannot be asked"),
+                }
+            }
+            tokio::select! {
+                Ok(()) = tokens.changed() => {}
+                () = tokio::time::sleep(ASK_SIBLINGS_EVERY) => {}
+            }
+        }
+    }
+}
+
+/// Nobody announces the moment at which a router is connected, so it is looked for again and again.
+async fn until_connected(session: &Session) {
+    while !is_router_connected(session).await {
+        tokio::time::sleep(BETWEEN_ROUNDS).await;
+    }
+}
+
+/// The sibling to which `own` has to give way, when there is one.
+async fn first_before(
+    session: &Session,
+    place: &PresencePlace,
+    own: &Introduction,
+) -> zenoh::Result<Option<Introduction>> {
+    let others = who_is_there(session, &place.siblings).await?;
+    Ok(others.into_iter().find(|other| gives_way(own, other)))
 }
 
 /// Everyone who answers at `key_expression`.
@@ -148,8 +233,10 @@ fn gives_way(own: &Introduction, other: &Introduction) -> bool {
     if other.instance == own.instance || other.machine == own.machine {
         return false;
     }
-    let earlier = (other.started_at_ns, &other.instance) < (own.started_at_ns, &own.instance);
-    other.established || earlier
+    if other.established != own.established {
+        return other.established;
+    }
+    (other.started_at_ns, &other.instance) < (own.started_at_ns, &own.instance)
 }
 
 fn introduction(identity: &Identity, version: &str) -> Introduction {
@@ -247,6 +334,13 @@ mod tests {
         assert!(gives_way(&late, &early) && !gives_way(&early, &late));
         let (small, large) = (process("a", 1, false), process("b", 1, false));
         assert!(gives_way(&large, &small) && !gives_way(&small, &large));
+    }
+
+    #[test]
+    fn of_two_established_ones_that_meet_the_earlier_stays_and_a_beginner_displaces_nobody() {
+        let (early, late) = (process("b", 1, true), process("a", 2, true));
+        assert!(gives_way(&late, &early) && !gives_way(&early, &late));
+        assert!(!gives_way(&late, &process("c", 0, false)));
     }
 
     #[test]

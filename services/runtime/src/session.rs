@@ -60,6 +60,13 @@ impl Default for SessionSettings {
 /// own limit is 1 GiB.
 const MAX_MESSAGE_BYTES: usize = 17 << 20;
 
+/// How long a connection may be silent until it counts as lost, and everything behind it as gone.
+pub const LEASE: Duration = Duration::from_secs(10);
+
+/// How long one attempt to connect may take. Where nothing answers, not even a refusal, the system sends its requests
+/// at growing intervals, and only a new attempt begins anew: this bounds how late a healed link is noticed.
+const ATTEMPT: Duration = Duration::from_secs(3);
+
 /// Zenoh's word for a connection that is tried for as long as the session lives.
 const FOR_EVER: i64 = -1;
 
@@ -175,6 +182,8 @@ impl SessionSettings {
             ("listen", "listen/endpoints", json(&self.listen)),
             ("multicast", "scouting/multicast/enabled", json(&self.multicast)),
             ("multicast", "scouting/gossip/enabled", json(&self.multicast)),
+            ("connect", "transport/unicast/open_timeout", json(&ATTEMPT.as_millis())),
+            ("mode", "transport/link/tx/lease", json(&LEASE.as_millis())),
             ("mode", "transport/link/rx/max_message_size", json(&MAX_MESSAGE_BYTES)),
         ] {
             config.insert_json5(key, &value).map_err(|reason| SessionError::Setting {

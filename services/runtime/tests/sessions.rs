@@ -6,7 +6,7 @@ use std::net::TcpListener;
 use std::time::Duration;
 
 use runtime::presence::{Presence, PresenceError, PresencePlace, clock_offset, who_is_there};
-use runtime::{Identity, SessionSettings, StateDir};
+use runtime::{Identity, SessionSettings, Shutdown, StateDir};
 use tokio::time::timeout;
 
 const LONG: Duration = Duration::from_secs(20);
@@ -123,4 +123,32 @@ async fn the_clock_of_a_process_on_this_machine_is_not_off() {
     let offset = clock_offset(&asking, &own_key).await.unwrap().expect("an answer");
     assert!(offset.offset_ns.abs() <= offset.round_trip_ns, "{offset:?}");
     assert_eq!(clock_offset(&asking, "@waymark/v1/rink/v9/follower/*").await.unwrap(), None);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn of_two_that_could_not_hear_each_other_the_later_leaves_once_they_can() {
+    let endpoints = [free_endpoint(), free_endpoint()];
+    let places = tempfile::tempdir().unwrap();
+    let mut halves = Vec::new();
+    for endpoint in &endpoints {
+        let router = SessionSettings::router(endpoint).open().await.unwrap();
+        let session = SessionSettings::client(endpoint).open().await.unwrap();
+        let state = StateDir::open(&places.path().join(endpoint.replace('/', "-"))).unwrap();
+        let identity = Identity::on(&state);
+        let held = Presence::claim(&session, &place(&identity.instance), &identity, "1").await.unwrap();
+        halves.push((router, session, state, identity, held));
+    }
+    let (early, late) = (&halves[0], &halves[1]);
+    let bridge = SessionSettings { connect: endpoints.to_vec(), ..SessionSettings::default() };
+    let _bridge = bridge.open().await.unwrap();
+
+    let shutdown = Shutdown::new();
+    let ((), superseded) =
+        timeout(LONG, late.4.hold(shutdown.requested(), &shutdown)).await.expect("nobody left");
+    let Some(PresenceError::AlreadyPresent { first, .. }) = superseded else { panic!("{superseded:?}") };
+    assert_eq!(first.instance, early.3.instance);
+    assert!(shutdown.is_requested());
+    let there = who_is_there(&late.1, &place("").siblings).await.unwrap();
+    assert!(there.iter().any(|process| process.instance == early.3.instance), "{there:?}");
+    assert!(timeout(Duration::from_millis(1), early.4.superseded()).await.is_err());
 }

@@ -147,7 +147,7 @@ impl Convoy {
         }
         self.parts.request();
         let follower = self.follower.await??;
-        self.leader.finished().await;
+        self.leader.finished().await?;
         let scorer = self.judge.finish().await;
         for session in self.sessions.into_iter().rev() {
             // At the end of the process; whoever is still connected sees the end by itself.
