@@ -5,7 +5,10 @@ use std::sync::Arc;
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
+use vision::follow::{FollowOptions, FollowState, FrameStamp, LandmarkState, Mode, Track};
 use vision::outcome::{Adaptation, NearestMatch, Statistic};
+use vision::predict::{Axis, Fix, Kalman, PredictionMethod, Predictor};
+use vision::register::ShapeVeto;
 use vision::{
     ColorStats, Digest, Gate, Landmark, LandmarkOutcome, LandmarkSet, Miss, Outcome, PointPx, Prediction,
     Segment, SetVersion, ShapeClass, Sighting, SizePx, Timestamp, WindowPx,
@@ -158,5 +161,76 @@ pub(crate) fn outcomes() -> impl Strategy<Value = Outcome> {
             set_version,
             landmarks,
         },
+    )
+}
+
+pub(crate) fn follow_options() -> impl Strategy<Value = FollowOptions> {
+    let modes = prop::sample::select(vec![Mode::Faithful, Mode::Adaptive]);
+    let predictions = prop::sample::select(PredictionMethod::ALL.to_vec());
+    let vetoes = prop::sample::select(vec![ShapeVeto::Off, ShapeVeto::Required]);
+    (modes, predictions, vetoes, any::<u32>(), any::<u64>()).prop_map(
+        |(mode, prediction, shape_veto, max_instances, budget_px)| FollowOptions {
+            mode,
+            prediction,
+            shape_veto,
+            max_instances,
+            budget_px,
+        },
+    )
+}
+
+fn axes() -> impl Strategy<Value = Axis> {
+    (-1e7..1e7, -1e7..1e7, prop::array::uniform3(-1e8..1e8)).prop_map(|(value, rate, covariance)| Axis {
+        value,
+        rate,
+        covariance,
+    })
+}
+
+fn predictors() -> impl Strategy<Value = Predictor> {
+    let fixes = (any::<i64>(), points(), 0.0f32..1e6).prop_map(|(nanos, centroid, area_px2)| Fix {
+        captured_at: Timestamp::from_nanos(nanos),
+        centroid,
+        area_px2,
+    });
+    let kalman =
+        (any::<i64>(), axes(), axes(), axes(), 1.0..400.0).prop_map(|(nanos, x, y, log_area, unrest)| {
+            Kalman { fixed_at: Timestamp::from_nanos(nanos), x, y, log_area, unrest }
+        });
+    (prop::sample::select(PredictionMethod::ALL.to_vec()), kalman, vec(fixes, 0..=3))
+        .prop_map(|(method, kalman, fixes)| Predictor { method, kalman, fixes })
+}
+
+fn tracks() -> impl Strategy<Value = Track> {
+    (any::<u32>(), predictors(), 0.0f32..4.0, 0.0f32..=1.0, any::<u32>(), any::<u32>()).prop_map(
+        |(instance, predictor, gain, score, sightings, misses)| Track {
+            instance,
+            predictor,
+            gain,
+            score,
+            sightings,
+            misses,
+        },
+    )
+}
+
+fn landmark_states() -> impl Strategy<Value = LandmarkState> {
+    ("[a-z0-9][a-z0-9_-]{0,8}", any::<[u8; 32]>(), any::<u32>(), any::<u32>(), vec(tracks(), 0..3)).prop_map(
+        |(id, digest, next_instance, frames_since_search, tracks)| LandmarkState {
+            id,
+            digest: Digest(digest),
+            next_instance,
+            frames_since_search,
+            tracks,
+        },
+    )
+}
+
+pub(crate) fn follow_states() -> impl Strategy<Value = FollowState> {
+    let stamps = (any::<u64>(), any::<i64>())
+        .prop_map(|(sequence, nanos)| FrameStamp { sequence, captured_at: Timestamp::from_nanos(nanos) });
+    let turns = (0..1_000u32).prop_map(|turn| turn as usize);
+    (option::of(stamps), prop::array::uniform3(0.0f32..100.0), turns, vec(landmark_states(), 0..4)).prop_map(
+        |(last, noise_variance, turn, landmarks)| FollowState { last, noise_variance, turn, landmarks },
     )
 }

@@ -5,6 +5,7 @@
 //! this version does not know were dropped by the decoder; enum values that it does not know are refused.
 
 mod check;
+mod follow_state;
 mod landmark;
 mod registration_from_wire;
 mod registration_to_wire;
@@ -12,6 +13,7 @@ mod set;
 mod stats;
 
 pub use check::InvalidField;
+pub use follow_state::{FollowSnapshot, follow_state_from_wire, follow_state_to_wire};
 pub use landmark::{landmark_draft_from_wire, landmark_from_wire, landmark_to_wire};
 pub use registration_from_wire::registration_from_wire;
 pub use registration_to_wire::registration_to_wire;

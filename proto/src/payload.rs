@@ -113,6 +113,7 @@ waymark_messages!(
     LandmarkEdit: MAX_SET_BYTES,
     LandmarkEditReply: MAX_MESSAGE_BYTES,
     Registration: MAX_MESSAGE_BYTES,
+    FollowState: MAX_MESSAGE_BYTES,
     Truth: MAX_MESSAGE_BYTES,
     VehicleStatus: MAX_MESSAGE_BYTES,
 );
@@ -148,6 +149,7 @@ mod tests {
         describes_itself::<v1::LandmarkEdit>();
         describes_itself::<v1::LandmarkEditReply>();
         describes_itself::<v1::Registration>();
+        describes_itself::<v1::FollowState>();
         describes_itself::<v1::Truth>();
         describes_itself::<v1::VehicleStatus>();
         describes_itself::<fox::CompressedImage>();

@@ -50,6 +50,13 @@ pub(super) fn finite(field: impl fmt::Display, value: f32) -> Result<f32, Invali
     Err(InvalidField::new(field, value, "a finite number"))
 }
 
+pub(super) fn finite_f64(field: impl fmt::Display, value: f64) -> Result<f64, InvalidField> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(InvalidField::new(field, value, "a finite number"))
+}
+
 pub(super) fn not_negative(field: impl fmt::Display, value: f32) -> Result<f32, InvalidField> {
     if value.is_finite() && value >= 0.0 {
         return Ok(value);
