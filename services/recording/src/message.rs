@@ -36,16 +36,23 @@ pub enum Latch {
     None,
     /// State: stored when it arrives and repeated at the head of every later file (landmarks, calibration).
     Repeat(LatchKey),
-    /// State too frequent to store each time (a camera's `Follow` state): stored at the head of each file,
-    /// and once more at its first change after that, because frames were in flight when the file began.
-    HeadOnly(LatchKey),
+    /// State too frequent to store each time, which each message of topic `of` changes (a camera's `Follow` state
+    /// and its pictures; both carry the picture's publish time): stored at the head of each file, then until it
+    /// includes the file's first message of that topic, because some were in flight when the file began, and
+    /// every five seconds, so that what comes after a loss can be made sense of again.
+    Snapshot {
+        /// Which state.
+        key: LatchKey,
+        /// The topic of what changes it.
+        of: Arc<str>,
+    },
 }
 
 impl Latch {
     pub(crate) fn key(&self) -> Option<&LatchKey> {
         match self {
             Latch::None => None,
-            Latch::Repeat(key) | Latch::HeadOnly(key) => Some(key),
+            Latch::Repeat(key) | Latch::Snapshot { key, .. } => Some(key),
         }
     }
 }

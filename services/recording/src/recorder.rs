@@ -3,15 +3,17 @@
 //! It runs on the journal thread, and in tests without any thread or clock. Its states are off, recording
 //! and failed; a failed recorder counts what it cannot store and tries a new file every second.
 
-use std::{collections::BTreeSet, time::Duration};
+use std::time::Duration;
 
 use crate::{
     Attachment, Command, FileName, FileWriter, JournalOptions, Latch, LatchKey, Ledger, Message,
     RecordingError, State, Status, Storage, file_name::is_vehicle, latched::Latched,
     pre_trigger::PreTriggerBuffer, writer::Purpose,
 };
+use snapshots::SnapshotSchedule;
 
 mod files;
+mod snapshots;
 #[cfg(test)]
 mod tests;
 
@@ -55,8 +57,8 @@ struct OpenFile<F: crate::RecordingFile> {
     opened_at: Duration,
     /// When the oldest unsynced message must be safe.
     sync_due: Option<Duration>,
-    /// Head-only state that has been stored once since the head.
-    heads_renewed: BTreeSet<LatchKey>,
+    /// What decides whether a snapshot is stored.
+    snapshots: SnapshotSchedule,
 }
 
 impl<S: Storage> Recorder<S> {
@@ -235,9 +237,7 @@ impl<S: Storage> Recorder<S> {
             self.count_unstored(message);
             return;
         };
-        if let Latch::HeadOnly(key) = &message.latch
-            && !file.heads_renewed.insert(key.clone())
-        {
+        if !file.snapshots.wants(message) {
             self.settled.topic(&message.channel.topic).unrecorded += 1;
             return;
         }
@@ -247,10 +247,10 @@ impl<S: Storage> Recorder<S> {
         }
     }
 
-    /// A message that a failed recorder cannot store; head-only state is not lost, a later head will hold it.
+    /// A message that a failed recorder cannot store; a snapshot is not lost, a later head will hold it.
     fn count_unstored(&mut self, message: &Message) {
         let topic = &message.channel.topic;
-        if let Latch::HeadOnly(_) = message.latch {
+        if let Latch::Snapshot { .. } = message.latch {
             self.settled.topic(topic).unrecorded += 1;
         } else {
             self.settled.topic(topic).lost_on_disk += 1;

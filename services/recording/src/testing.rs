@@ -54,8 +54,10 @@ pub(crate) fn latched(channel: &Arc<ChannelSpec>, sequence: u32, key: &str) -> M
     Message { latch: Latch::Repeat(LatchKey(key.to_owned())), ..message(channel, sequence, 40) }
 }
 
-pub(crate) fn head_only(channel: &Arc<ChannelSpec>, sequence: u32, key: &str) -> Message {
-    Message { latch: Latch::HeadOnly(LatchKey(key.to_owned())), ..message(channel, sequence, 40) }
+/// State that includes the message `sequence` of `of`.
+pub(crate) fn snapshot(channel: &Arc<ChannelSpec>, sequence: u32, of: &Arc<ChannelSpec>) -> Message {
+    let latch = Latch::Snapshot { key: LatchKey(channel.topic.clone()), of: of.topic.as_str().into() };
+    Message { latch, ..message(channel, sequence, 40) }
 }
 
 /// Time `ms` milliseconds into a test.

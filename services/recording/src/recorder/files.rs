@@ -1,8 +1,8 @@
 //! Opening, closing and giving up files; making room for them.
 
-use std::{collections::BTreeSet, io};
+use std::io;
 
-use super::{Now, OpenFile, Phase, RETRY_EVERY, Recorder};
+use super::{Now, OpenFile, Phase, RETRY_EVERY, Recorder, SnapshotSchedule};
 use crate::{FileName, FileWriter, Ledger, RecordingError, Storage, writer::Purpose};
 
 /// Names tried before giving up, should other writers keep taking them.
@@ -125,7 +125,7 @@ impl<S: Storage> Recorder<S> {
                 name,
                 opened_at: now.elapsed,
                 sync_due: None,
-                heads_renewed: BTreeSet::new(),
+                snapshots: SnapshotSchedule::default(),
             }),
             Err(error) => {
                 let _ = self.storage.remove(&name.active());

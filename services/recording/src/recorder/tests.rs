@@ -10,7 +10,7 @@ use crate::{
     reader::{MessageReader, Strictness},
     storage::faulty::FaultyDisk,
     testing::{
-        at_ms, channel, head_only, latched, message, names, options, read_strictly, recorder, sequences_on,
+        at_ms, channel, latched, message, names, options, read_strictly, recorder, sequences_on, snapshot,
     },
     walk::RecordedMessage,
 };
@@ -122,21 +122,43 @@ fn messages_that_belong_together_stay_in_one_file() {
 }
 
 #[test]
-fn head_only_state_stands_at_the_head_and_once_behind_it() {
+fn a_snapshot_stands_at_the_head_and_until_it_includes_the_files_first_picture() {
     let directory = tempfile::tempdir().unwrap();
     let mut recorder = recorder(options(directory.path()));
-    let (state, registration) = (channel("/state"), channel("/registration"));
-    let frame = |n| vec![message(&registration, n, 50), head_only(&state, n, "front")];
-    (0..5).for_each(|n| recorder.store(frame(n), at_ms(0)));
+    let (image, state) = (channel("/image"), channel("/state"));
+    let picture = |recorder: &mut Recorder<_>, n| recorder.store(vec![message(&image, n, 50)], at_ms(0));
+    let seen = |recorder: &mut Recorder<_>, n| recorder.store(vec![snapshot(&state, n, &image)], at_ms(0));
+    for n in 0..5 {
+        picture(&mut recorder, n);
+        seen(&mut recorder, n);
+    }
+    // Two pictures are in flight when the file ends.
+    (5..7).for_each(|n| picture(&mut recorder, n));
     recorder.command(Command::Split, at_ms(1));
-    (5..9).for_each(|n| recorder.store(frame(n), at_ms(2)));
+    seen(&mut recorder, 5);
+    picture(&mut recorder, 7);
+    (6..9).for_each(|n| seen(&mut recorder, n));
     recorder.finish(at_ms(3));
 
     let files = names(directory.path());
     let states = |name: &String| sequences_on(&read_strictly(&directory.path().join(name)), "/state");
-    assert_eq!(files.iter().map(states).collect::<Vec<_>>(), [vec![0], vec![4, 5]]);
+    assert_eq!(files.iter().map(states).collect::<Vec<_>>(), [vec![0], vec![4, 5, 6]]);
     let account = recorder.ledger().get("/state").copied().unwrap();
-    assert_eq!((account.stored, account.repeated, account.unrecorded, account.lost()), (2, 1, 7, 0));
+    assert_eq!((account.stored, account.repeated, account.unrecorded, account.lost()), (3, 1, 6, 0));
+}
+
+#[test]
+fn a_snapshot_is_stored_again_after_five_seconds() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut recorder = recorder(options(directory.path()));
+    let (image, state) = (channel("/image"), channel("/state"));
+    // A message each millisecond.
+    for n in (0..12_000).step_by(100) {
+        recorder.store(vec![message(&image, n, 50), snapshot(&state, n, &image)], at_ms(0));
+    }
+    recorder.finish(at_ms(3));
+    let read = read_strictly(&directory.path().join(&names(directory.path())[0]));
+    assert_eq!(sequences_on(&read, "/state"), [0, 5_000, 10_000]);
 }
 
 #[test]
