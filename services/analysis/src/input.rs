@@ -12,6 +12,7 @@ use ingest::recorded::Damage;
 use ingest::source::{SourceUri, SourceUriError};
 use recording::RecordingError;
 use vision::LandmarkSet;
+use vision::follow::{FollowOptions, FollowState};
 
 use pictures::PictureFrames;
 use replay::Replay;
@@ -89,8 +90,15 @@ pub struct InputFrame {
 pub enum Live {
     /// Nothing: plain pictures, or a recording without landmarks.
     Unknown,
-    /// These landmarks were looked for in it.
-    Registered(Arc<LandmarkSet>),
+    /// It was looked at.
+    Registered {
+        /// The landmarks that were looked for.
+        landmarks: Arc<LandmarkSet>,
+        /// How, where the recording says it.
+        options: Option<FollowOptions>,
+        /// Where the camera stood before it, where the recording says it anew.
+        state: Option<FollowState>,
+    },
     /// A newer frame replaced it before anyone looked.
     Dropped,
 }

@@ -3,6 +3,7 @@
 //! The same [`vision::follow::Follow`] as in a follower, fed from files instead of streams, so that what is found here
 //! is what a vehicle finds. Nothing here prints: results are values, or go to a writer that the caller gives.
 
+pub mod follow_choice;
 pub mod input;
 pub mod landmark_file;
 pub mod learn;

@@ -9,9 +9,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use ingest::camera_thread::decode_into;
 use ingest::encoded::EncodedFrame;
-use vision::follow::{Follow, FollowOptions, FrameStamp};
+use vision::follow::{Follow, FollowOptions, FollowState, FrameStamp};
 use vision::{Frame, LandmarkSet, NoProbe, Outcome};
 
+use crate::follow_choice::FollowChoice;
 use crate::input::{Frames, Input, InputFrame, Live};
 use crate::overlays::{OverlayError, Overlays, series_name};
 use crate::stage_times::{FrameClock, StageTimes, thread_cpu_ns};
@@ -24,8 +25,8 @@ const QUEUED_EVENTS: usize = 256;
 pub struct Job {
     /// What to look for; `None` for what a recording itself says was looked for, in the frames it was looked for in.
     pub landmarks: Option<Arc<LandmarkSet>>,
-    /// How.
-    pub options: FollowOptions,
+    /// How, where it is not to be as a recording says.
+    pub choice: FollowChoice,
     /// Inputs worked on at the same time.
     pub threads: NonZeroUsize,
     /// Whether stages are timed, which itself costs a little.
@@ -148,6 +149,14 @@ struct Cameras<'a> {
     times: StageTimes,
 }
 
+/// What to do with one frame.
+struct Plan {
+    set: Arc<LandmarkSet>,
+    options: FollowOptions,
+    /// Where to stand before it, when not where the frame before has led.
+    state: Option<FollowState>,
+}
+
 /// One camera's state machine, and the set it was last given.
 struct Camera {
     follow: Follow,
@@ -158,13 +167,8 @@ impl Cameras<'_> {
     /// Looks at one frame; `None` when nobody looked at it when it was recorded either.
     fn on_frame(&mut self, input: InputFrame) -> Option<Event> {
         let InputFrame { frame, camera, name, picture, live } = input;
-        let set = match (&self.job.landmarks, live) {
-            (Some(given), _) => Arc::clone(given),
-            (None, Live::Registered(set)) => set,
-            (None, Live::Unknown) => Arc::default(),
-            (None, Live::Dropped) => return None,
-        };
-        let seen = picture.map_err(Into::into).and_then(|picture| self.look_at(&camera, &set, &picture));
+        let plan = self.plan(live)?;
+        let seen = picture.map_err(Into::into).and_then(|picture| self.look_at(&camera, plan, &picture));
         Some(match seen {
             Ok((mut picture, outcome)) => {
                 let drawn = self.draw(frame, camera.as_deref(), &mut picture, &outcome);
@@ -178,22 +182,37 @@ impl Cameras<'_> {
         })
     }
 
+    /// What to do with a frame; `None` when it is not to be looked at.
+    fn plan(&self, live: Live) -> Option<Plan> {
+        let choice = self.job.choice;
+        let afresh = |set| Plan { set, options: choice.over(None), state: None };
+        match (&self.job.landmarks, live) {
+            (Some(given), _) => Some(afresh(Arc::clone(given))),
+            (None, Live::Registered { landmarks, options: recorded, state }) => {
+                let options = choice.over(recorded);
+                // Another way of following leads elsewhere; it has a past of its own.
+                Some(Plan { set: landmarks, options, state: state.filter(|_| recorded == Some(options)) })
+            }
+            (None, Live::Unknown) => Some(afresh(Arc::default())),
+            (None, Live::Dropped) => None,
+        }
+    }
+
     fn look_at(
         &mut self,
         camera: &Option<Arc<str>>,
-        set: &Arc<LandmarkSet>,
+        plan: Plan,
         picture: &EncodedFrame,
     ) -> Result<(Frame, Outcome), Box<dyn Error + Send + Sync>> {
         let begun_ns = thread_cpu_ns();
         let frame = decode_into(picture, std::mem::take(&mut self.pixels))?;
         let decoded_ns = thread_cpu_ns();
         let stamp = FrameStamp { sequence: picture.sequence, captured_at: picture.captured_at };
-        let options = self.job.options;
         let camera = self.cameras.entry(camera.clone()).or_insert_with(|| Camera {
-            follow: Follow::new(options, (**set).clone()),
-            set: Arc::clone(set),
+            follow: Follow::new(plan.options, (*plan.set).clone()),
+            set: Arc::clone(&plan.set),
         });
-        camera.adopt(set);
+        camera.adopt(plan);
         let outcome = match self.job.timing {
             Timing::Off => camera.follow.on_frame(&frame, stamp, &mut NoProbe),
             Timing::On => {
@@ -221,10 +240,12 @@ impl Cameras<'_> {
 }
 
 impl Camera {
-    fn adopt(&mut self, set: &Arc<LandmarkSet>) {
-        if !Arc::ptr_eq(&self.set, set) && self.set != *set {
-            self.follow.set_landmarks((**set).clone());
+    fn adopt(&mut self, Plan { set, options, state }: Plan) {
+        if let Some(state) = state {
+            self.follow = Follow::restore(options, (*set).clone(), state);
+        } else if !Arc::ptr_eq(&self.set, &set) && self.set != set {
+            self.follow.set_landmarks((*set).clone());
         }
-        self.set = Arc::clone(set);
+        self.set = set;
     }
 }

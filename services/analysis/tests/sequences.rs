@@ -11,12 +11,13 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use analysis::follow_choice::FollowChoice;
 use analysis::input::Input;
 use analysis::learn::learn_from_files;
 use analysis::register::{Event, Job, Timing, register};
 use analysis::score::{Claim, Score, score};
 use analysis::truth::Truth;
-use vision::follow::{FollowOptions, Mode};
+use vision::follow::Mode;
 use vision::learn::LearnOptions;
 use vision::{LandmarkSet, SetVersion, ShapeClass};
 
@@ -52,7 +53,7 @@ impl Case {
         let set = LandmarkSet { version: SetVersion::default(), landmarks: vec![Arc::new(landmark)] };
         let job = Job {
             landmarks: Some(Arc::new(set)),
-            options: FollowOptions { mode, ..FollowOptions::default() },
+            choice: FollowChoice { mode: Some(mode), ..FollowChoice::default() },
             threads: NonZeroUsize::MIN,
             timing: Timing::Off,
             overlays: None,

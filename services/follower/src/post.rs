@@ -61,7 +61,7 @@ impl Post {
         let topics = CameraTopics::new(own, &id);
         let intake =
             Intake::new(topics.clone(), Arc::clone(journal), thread.mailbox(), Arc::clone(&counters));
-        let results = Results::declare(session, own, &id, topics, Arc::clone(journal)).await?;
+        let results = Results::declare(session, own, &id, topics, options, Arc::clone(journal)).await?;
         let station = Station::new(id.as_str(), thread.mailbox(), counters, thread.counters(), newest);
         Ok(Self { id, thread, intake, results, waiting, station: Arc::new(station) })
     }

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use bytes::Bytes;
 use ingest::camera_thread::Registered;
 use prost::Message;
-use recording::{Journal, Latch};
+use recording::{Journal, Latch, LatchKey};
 use tokio::sync::mpsc;
+use vision::follow::FollowOptions;
 use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
 use waymark_proto::{annotations, convert, foxglove, v1};
 use zenoh::Session;
@@ -22,6 +23,7 @@ use crate::web::Face;
 /// The way out of one camera's results.
 pub(crate) struct Results {
     topics: CameraTopics,
+    options: FollowOptions,
     journal: Arc<Journal>,
     registrations: Outbound,
     annotations: Outbound,
@@ -33,6 +35,7 @@ impl Results {
         keys: &VehicleKeys,
         camera: &Id,
         topics: CameraTopics,
+        options: FollowOptions,
         journal: Arc<Journal>,
     ) -> Result<Self, FollowerError> {
         let registrations = Outbound::declare::<v1::Registration>(
@@ -47,7 +50,13 @@ impl Results {
             Reliability::BestEffort,
             Priority::Data,
         );
-        Ok(Self { topics, journal, registrations: registrations.await?, annotations: annotations.await? })
+        Ok(Self {
+            topics,
+            options,
+            journal,
+            registrations: registrations.await?,
+            annotations: annotations.await?,
+        })
     }
 
     /// Hands on every result until the camera's thread has ended and all of them are out.
@@ -68,17 +77,23 @@ impl Results {
         let captured_at_ns = outcome.captured_at.nanos;
         let registration = convert::registration_to_wire(camera, outcome).encode_to_vec();
         let annotations = annotations::annotations(outcome).encode_to_vec();
-        let entry = |channel, data: &[u8]| Entry {
+        let state = convert::follow_state_to_wire(camera, &self.options, &registered.state).encode_to_vec();
+        let snapshot = Latch::Snapshot {
+            key: LatchKey(self.topics.follow_state.topic.clone()),
+            of: self.topics.compressed_image.topic.as_str().into(),
+        };
+        let entry = |channel, data: &[u8], latch| Entry {
             channel,
             captured_at_ns,
             sequence: outcome.sequence,
             data: Bytes::copy_from_slice(data),
-            latch: Latch::None,
+            latch,
         };
-        // Together, so that no file ends between a result and its drawing.
+        // Together, so that no file ends between a result, its drawing and what it leaves behind.
         let _counted_by_the_journal = self.journal.offer_all(vec![
-            entry(&self.topics.registration, &registration).stamped(),
-            entry(&self.topics.annotations, &annotations).stamped(),
+            entry(&self.topics.registration, &registration, Latch::None).stamped(),
+            entry(&self.topics.annotations, &annotations, Latch::None).stamped(),
+            entry(&self.topics.follow_state, &state, snapshot).stamped(),
         ]);
         self.registrations.put(registration, captured_at_ns).await;
         self.annotations.put(annotations, captured_at_ns).await;

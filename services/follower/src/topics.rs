@@ -22,6 +22,8 @@ pub(crate) struct CameraTopics {
     pub(crate) registration: Arc<ChannelSpec>,
     /// The same, for viewers.
     pub(crate) annotations: Arc<ChannelSpec>,
+    /// What the next outcome depends on; in recordings only.
+    pub(crate) follow_state: Arc<ChannelSpec>,
 }
 
 /// The channels that belong to no camera.
@@ -60,6 +62,10 @@ impl CameraTopics {
             annotations: channel::<foxglove::ImageAnnotations>(
                 topic(CameraStream::Annotations),
                 key(CameraStream::Annotations),
+            ),
+            follow_state: channel::<v1::FollowState>(
+                format!("/{}/camera/{camera}/follow", keys.vehicle()),
+                String::new(),
             ),
         }
     }

@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use tokio::sync::{mpsc, watch};
-use vision::follow::{Follow, FollowOptions, FrameStamp};
+use vision::follow::{Follow, FollowOptions, FollowState, FrameStamp};
 use vision::frame::decode::{self, DecodeError, DecodeLimits, RawPicture};
 use vision::{Frame, LandmarkSet, NoProbe, Outcome};
 
@@ -21,6 +21,8 @@ pub struct Registered {
     pub picture: Arc<EncodedFrame>,
     /// What was seen in it.
     pub outcome: Outcome,
+    /// What the outcome of the next picture depends on.
+    pub state: FollowState,
     /// Wall time spent decoding.
     pub decode_time: Duration,
     /// Wall time spent registering all landmarks.
@@ -156,7 +158,8 @@ impl Worker {
         let finished_at = Instant::now();
         self.pixels = frame.into_rgb();
         let (decode_time, register_time) = (decoded - started, finished_at - decoded);
-        Ok(Registered { picture, outcome, decode_time, register_time, finished_at })
+        let state = self.follow.state();
+        Ok(Registered { picture, outcome, state, decode_time, register_time, finished_at })
     }
 
     fn hand_on(&self, registered: Registered) {

@@ -9,7 +9,10 @@ use std::sync::Arc;
 use recording::RecordingError;
 use recording::walk::{CutChunk, Fault, RecordedMessage, Step, Walk};
 use vision::{Landmark, LandmarkSet, Outcome};
-use waymark_proto::convert::{InvalidField, landmark_from_wire, manifest_from_wire, registration_from_wire};
+use waymark_proto::convert::{
+    FollowSnapshot, InvalidField, follow_state_from_wire, landmark_from_wire, manifest_from_wire,
+    registration_from_wire,
+};
 use waymark_proto::payload::{RefusedPayload, WireMessage};
 use waymark_proto::{json, v1};
 
@@ -40,6 +43,8 @@ pub enum RecordedItem {
         /// What was seen.
         outcome: Outcome,
     },
+    /// Where a camera stood behind the last picture of it that was registered.
+    State(FollowSnapshot),
     /// A part of the file that cannot be used.
     Damage(Damage),
 }
@@ -141,6 +146,10 @@ impl RecordedItems {
                 let set = LandmarkSet { version: manifest.version, landmarks };
                 // A set from which something was retired stands in the attachment that follows.
                 Ok(if manifest.describes(&set) { self.adopt(set) } else { None })
+            }
+            v1::FollowState::SCHEMA => {
+                let snapshot = follow_state_from_wire(&decoded(topic, &message.data)?).map_err(field)?;
+                Ok(Some(RecordedItem::State(snapshot)))
             }
             v1::Registration::SCHEMA => {
                 let (_, outcome) = registration_from_wire(&decoded(topic, &message.data)?).map_err(field)?;

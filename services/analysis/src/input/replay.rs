@@ -8,20 +8,25 @@ use ingest::encoded::EncodedFrame;
 use ingest::picture_message::NoPicture;
 use ingest::recorded::{RecordedItem, RecordedItems};
 use recording::RecordingError;
-use vision::{LandmarkSet, SetVersion};
+use vision::{LandmarkSet, SetVersion, Timestamp};
+use waymark_proto::convert::FollowSnapshot;
 
 use super::{FrameError, InputError, InputFrame, Live};
+
+/// Full sequence number and set of pictures, by their capture time and their sequence number cut to 32 bits.
+type RegisteredPictures = BTreeMap<(Timestamp, u32), (u64, SetVersion)>;
 
 /// What a first reading of the recording found out.
 #[derive(Debug, Default)]
 struct Survey {
     /// Pictures on each image topic.
     pictures: BTreeMap<String, usize>,
-    /// For each camera of which results were recorded: full sequence number and set of each registered picture, by its
-    /// sequence number cut to 32 bits.
-    registered: BTreeMap<Arc<str>, BTreeMap<u32, (u64, SetVersion)>>,
+    /// What was looked at, for each camera of which results were recorded.
+    registered: BTreeMap<Arc<str>, RegisteredPictures>,
     /// Every set that was in force at some time.
     sets: BTreeMap<SetVersion, Arc<LandmarkSet>>,
+    /// Where each camera stood, by the capture time of the last picture it had looked at.
+    states: BTreeMap<String, BTreeMap<Timestamp, FollowSnapshot>>,
 }
 
 /// The pictures of a recording's cameras in the order of the file.
@@ -64,7 +69,7 @@ impl Replay {
         let (picture, live) = match picture {
             Err(error) => (Err(error.into()), Live::Unknown),
             Ok(mut picture) => {
-                let live = self.live(&camera, &mut picture.sequence);
+                let live = self.live(&camera, &mut picture);
                 (Ok(picture), live)
             }
         };
@@ -72,12 +77,25 @@ impl Replay {
     }
 
     /// What became of a picture, whose sequence number is made whole where the recording tells it.
-    fn live(&self, camera: &Arc<str>, sequence: &mut u64) -> Live {
-        let in_force = || self.in_force.clone().map_or(Live::Unknown, Live::Registered);
-        let Some(registered) = self.survey.registered.get(camera) else { return in_force() };
-        let Some((whole, version)) = registered.get(&(*sequence as u32)) else { return Live::Dropped };
-        *sequence = *whole;
-        self.survey.sets.get(version).cloned().map_or_else(in_force, Live::Registered)
+    fn live(&mut self, camera: &Arc<str>, picture: &mut EncodedFrame) -> Live {
+        let in_force = self.in_force.clone();
+        let looked_for = match self.survey.registered.get(camera) {
+            None => in_force,
+            Some(registered) => {
+                let frame = (picture.captured_at, picture.sequence as u32);
+                let Some((whole, version)) = registered.get(&frame) else { return Live::Dropped };
+                picture.sequence = *whole;
+                self.survey.sets.get(version).cloned().or(in_force)
+            }
+        };
+        match looked_for {
+            None => Live::Unknown,
+            Some(landmarks) => {
+                let snapshot = self.survey.state_before(camera, picture.captured_at);
+                let (options, state) = snapshot.map(|snapshot| (snapshot.options, snapshot.state)).unzip();
+                Live::Registered { landmarks, options, state }
+            }
+        }
     }
 
     fn lost(&self, reason: FrameError) -> InputFrame {
@@ -98,7 +116,7 @@ impl Iterator for Replay {
                     }
                 }
                 Ok(RecordedItem::Landmarks(set)) => self.in_force = Some(Arc::new(set)),
-                Ok(RecordedItem::Registration { .. }) => {}
+                Ok(RecordedItem::Registration { .. } | RecordedItem::State(_)) => {}
                 Ok(RecordedItem::Damage(damage)) => return Some(self.lost(damage.into())),
                 Err(error) => return Some(self.lost(error.into())),
             }
@@ -107,6 +125,15 @@ impl Iterator for Replay {
 
     fn size_hint(&self) -> (usize, Option<usize>) {
         (self.remaining, None)
+    }
+}
+
+impl Survey {
+    /// Takes out the newest state that holds before a picture captured at `captured_at`, and those before it.
+    fn state_before(&mut self, camera: &str, captured_at: Timestamp) -> Option<FollowSnapshot> {
+        let states = self.states.get_mut(camera)?;
+        let later = states.split_off(&captured_at);
+        std::mem::replace(states, later).into_values().next_back()
     }
 }
 
@@ -120,7 +147,14 @@ fn survey(file: &Path) -> Result<Survey, RecordingError> {
             }
             RecordedItem::Registration { camera, outcome } => {
                 let registered = survey.registered.entry(camera).or_default();
-                registered.insert(outcome.sequence as u32, (outcome.sequence, outcome.set_version));
+                let frame = (outcome.captured_at, outcome.sequence as u32);
+                registered.insert(frame, (outcome.sequence, outcome.set_version));
+            }
+            RecordedItem::State(snapshot) => {
+                if let Some(last) = snapshot.state.last {
+                    let states = survey.states.entry(snapshot.camera.to_string()).or_default();
+                    states.insert(last.captured_at, snapshot);
+                }
             }
             // Told when the frames themselves are read.
             RecordedItem::Damage(_) => {}

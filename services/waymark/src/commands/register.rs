@@ -7,6 +7,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use analysis::follow_choice::FollowChoice;
 use analysis::input::{Frames, Input, InputError};
 use analysis::landmark_file::read_landmark_set;
 use analysis::overlays::Overlays;
@@ -15,7 +16,6 @@ use analysis::row::{FrameKey, rows};
 use analysis::stage_times::StageTimes;
 use analysis::table::RowWriter;
 use anyhow::{Context, anyhow};
-use vision::follow::FollowOptions;
 use vision::register::ShapeVeto;
 
 use crate::console::Console;
@@ -55,13 +55,13 @@ pub(crate) struct Args {
     #[arg(long = "landmark", short, value_name = "FILE")]
     landmarks: Vec<PathBuf>,
 
-    /// How frames are searched
-    #[arg(long, value_enum, default_value_t = ModeName::Adaptive)]
-    mode: ModeName,
+    /// How frames are searched [default: as a recording was live, else adaptive]
+    #[arg(long, value_enum)]
+    mode: Option<ModeName>,
 
-    /// How the place in the next frame is predicted
-    #[arg(long, value_enum, default_value_t = PredictionName::Kalman)]
-    prediction: PredictionName,
+    /// How the place in the next frame is predicted [default: as a recording was live, else kalman]
+    #[arg(long, value_enum)]
+    prediction: Option<PredictionName>,
 
     /// Do not report objects that are large enough to show their shape and show another
     #[arg(long)]
@@ -142,11 +142,10 @@ impl Args {
                 [] => None,
                 files => Some(Arc::new(read_landmark_set(files).or_usage()?)),
             },
-            options: FollowOptions {
-                mode: self.mode.into(),
-                prediction: self.prediction.into(),
-                shape_veto: if self.require_shape { ShapeVeto::Required } else { ShapeVeto::Off },
-                ..FollowOptions::default()
+            choice: FollowChoice {
+                mode: self.mode.map(Into::into),
+                prediction: self.prediction.map(Into::into),
+                shape_veto: self.require_shape.then_some(ShapeVeto::Required),
             },
             threads: self
                 .threads

@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use analysis::follow_choice::FollowChoice;
 use analysis::input::Input;
 use analysis::landmark_file::{landmark_text, read_landmark};
 use analysis::register::{Job, Timing};
@@ -10,7 +11,6 @@ use analysis::truth::Truth;
 use analysis::tune::{Change, Judge, Trial, most_trials, tune};
 use anyhow::Context;
 use vision::ColorStats;
-use vision::follow::FollowOptions;
 
 use crate::columns::Columns;
 use crate::commands::register::ModeName;
@@ -60,7 +60,7 @@ pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
     };
     let job = Job {
         landmarks: None,
-        options: FollowOptions { mode: args.mode.into(), ..FollowOptions::default() },
+        choice: FollowChoice { mode: Some(args.mode.into()), ..FollowChoice::default() },
         threads: NonZeroUsize::MIN,
         timing: Timing::Off,
         overlays: None,
