@@ -60,6 +60,8 @@ pub enum Resource {
     Guidance,
     /// A `waymark.v1.VehicleStatus`.
     Status,
+    /// What a diagnosis says to itself to see whether it comes back; anything, and of no meaning to others.
+    Echo(Id),
 }
 
 /// The streams of a camera.
@@ -106,6 +108,7 @@ impl fmt::Display for Resource {
             Self::Odometry => f.write_str("odometry"),
             Self::Guidance => f.write_str("guidance"),
             Self::Status => f.write_str("status"),
+            Self::Echo(id) => write!(f, "echo/{id}"),
         }
     }
 }
@@ -167,6 +170,7 @@ impl Resource {
             ["odometry"] => Some(Self::Odometry),
             ["guidance"] => Some(Self::Guidance),
             ["status"] => Some(Self::Status),
+            ["echo", id] => Some(Self::Echo(Id::new("echo", id)?)),
             _ => None,
         })
     }
@@ -185,6 +189,7 @@ mod tests {
     fn resources() -> impl Strategy<Value = Resource> {
         prop_oneof![
             ids().prop_map(Resource::Landmark),
+            ids().prop_map(Resource::Echo),
             (ids(), prop::sample::select(CameraStream::ALL.to_vec()))
                 .prop_map(|(camera, stream)| Resource::Camera(camera, stream)),
             (ids(), any::<u32>()).prop_map(|(route, number)| Resource::Keyframe { route, number }),

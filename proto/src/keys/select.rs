@@ -84,6 +84,12 @@ impl VehicleKeys {
         self.key(Resource::Status).to_string()
     }
 
+    /// Where this vehicle's diagnoses speak to themselves.
+    #[must_use]
+    pub fn echoes(&self) -> String {
+        format!("{}/echo/*", self.root())
+    }
+
     /// The status of every vehicle of this fleet.
     #[must_use]
     pub fn fleet_status(&self) -> String {
@@ -122,6 +128,7 @@ mod tests {
         assert_eq!(keys.camera(&front, CameraStream::Truth), "waymark/v1/rink/v1/camera/front/truth");
         assert_eq!(keys.cameras(CameraStream::Image), "waymark/v1/rink/v1/camera/*/image");
         assert_eq!(keys.status(), "waymark/v1/rink/v1/status");
+        assert_eq!(keys.echoes(), "waymark/v1/rink/v1/echo/*");
         assert_eq!(keys.fleet_status(), "waymark/v1/rink/*/status");
         assert_eq!(VehicleKeys::every_landmark(), "waymark/v1/*/*/landmark/**");
         assert_eq!(VehicleKeys::every_manifest(), "waymark/v1/*/*/manifest");

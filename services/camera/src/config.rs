@@ -2,10 +2,16 @@
 
 use runtime::SessionSettings;
 use runtime::telemetry::LogSettings;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use waymark_proto::keys::{Id, VehicleKeys};
+
+use crate::error::CameraError;
+use crate::run::period;
+use crate::shots::Shots;
 
 /// One camera of one vehicle.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CameraConfig {
     /// The fleet's id.
@@ -29,7 +35,7 @@ pub struct CameraConfig {
 }
 
 /// What happens at the end of a source.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum AtEnd {
     /// The camera ends.
@@ -37,6 +43,19 @@ pub enum AtEnd {
     Stop,
     /// It begins again, with new times.
     Repeat,
+}
+
+impl CameraConfig {
+    /// Looks whether a camera could start with this, as far as that can be told without the network.
+    ///
+    /// # Errors
+    /// As the camera's start.
+    pub fn check(&self) -> Result<(), CameraError> {
+        VehicleKeys::new(&self.fleet, &self.vehicle)?;
+        Id::new("camera", &self.camera)?;
+        period(Shots::open(self)?.frame_rate_hz().unwrap_or(self.frame_rate_hz))?;
+        Ok(())
+    }
 }
 
 impl Default for CameraConfig {

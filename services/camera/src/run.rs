@@ -68,7 +68,7 @@ async fn next_shot(mut shots: Shots) -> Result<(Shots, Option<Shot>), CameraErro
     Ok((shots, shot?))
 }
 
-fn period(frame_rate_hz: f64) -> Result<Duration, CameraError> {
+pub(crate) fn period(frame_rate_hz: f64) -> Result<Duration, CameraError> {
     if (0.01..=240.0).contains(&frame_rate_hz) {
         return Ok(Duration::from_secs_f64(frame_rate_hz.recip()));
     }

@@ -1,17 +1,21 @@
 //! What a follower is told at its start.
 
 use std::collections::BTreeMap;
-use std::net::SocketAddr;
 use std::path::PathBuf;
 
+use http_face::HttpSettings;
 use runtime::SessionSettings;
 use runtime::telemetry::LogSettings;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use vision::follow::{FollowOptions, Mode};
 use vision::predict::PredictionMethod;
+use waymark_proto::keys::{Id, VehicleKeys};
+
+use crate::error::FollowerError;
 
 /// One follower vehicle.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct FollowerConfig {
     /// The fleet's id.
@@ -29,7 +33,7 @@ pub struct FollowerConfig {
     /// Where the accepted landmark set and the machine's id are kept.
     pub state_dir: PathBuf,
     /// The web face.
-    pub http: HttpConfig,
+    pub http: HttpSettings,
     /// The recorder.
     pub recorder: RecorderConfig,
     /// How the others are reached.
@@ -38,20 +42,8 @@ pub struct FollowerConfig {
     pub log: LogSettings,
 }
 
-/// The web face of a vehicle.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct HttpConfig {
-    /// Address and port; beyond loopback it is read-only without a token.
-    pub listen: SocketAddr,
-    /// File that holds the bearer token for changes.
-    pub token_file: Option<PathBuf>,
-    /// Host names that are accepted besides IP addresses, localhost and the machine's name.
-    pub hosts: Vec<String>,
-}
-
 /// The recorder of a vehicle.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct RecorderConfig {
     /// Whether to record from the start.
@@ -69,7 +61,7 @@ pub struct RecorderConfig {
 }
 
 /// Names of the registration modes.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModeName {
     /// The thesis's method with fixed statistics.
@@ -80,7 +72,7 @@ pub enum ModeName {
 }
 
 /// Names of the predictors that can drive a gate.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum PredictionName {
     /// Where it was.
@@ -102,17 +94,11 @@ impl Default for FollowerConfig {
             mode: ModeName::default(),
             prediction: PredictionName::default(),
             state_dir: PathBuf::from("state/follower"),
-            http: HttpConfig::default(),
+            http: HttpSettings::on_loopback(8080),
             recorder: RecorderConfig::default(),
             zenoh: SessionSettings::default(),
             log: LogSettings::default(),
         }
-    }
-}
-
-impl Default for HttpConfig {
-    fn default() -> Self {
-        Self { listen: SocketAddr::from(([127, 0, 0, 1], 8080)), token_file: None, hosts: Vec::new() }
     }
 }
 
@@ -130,6 +116,18 @@ impl Default for RecorderConfig {
 }
 
 impl FollowerConfig {
+    /// Looks whether a follower could start with this, as far as that can be told without the network.
+    ///
+    /// # Errors
+    /// As the follower's start.
+    pub fn check(&self) -> Result<(), FollowerError> {
+        VehicleKeys::new(&self.fleet, &self.vehicle)?;
+        VehicleKeys::new(&self.fleet, &self.leader)?;
+        self.cameras.iter().try_for_each(|camera| Id::new("camera", camera).map(drop))?;
+        self.http.policy()?;
+        Ok(())
+    }
+
     /// The configuration as a recording keeps it: nothing in it is secret, since the token stands in a file of its own.
     pub(crate) fn as_metadata(&self) -> BTreeMap<String, String> {
         let value = serde_json::to_value(self).unwrap_or_default();

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use axum::Router;
 
-use http_face::{Policy, Token};
+use http_face::Policy;
 use recording::{Journal, JournalOptions, Report, Retention, Rotation};
 use runtime::presence::{Presence, PresencePlace};
 use runtime::{Identity, Shutdown, StateDir};
@@ -84,7 +84,7 @@ pub async fn run_on(
     let watch = LeaderWatch::begin(&session, &leader, feed.last_heard()).await?;
     let face = Arc::new(Face::new(&config, identity.instance, &session, &feed, watch, &posts, &journal));
     let beacon = StatusBeacon::declare(&session, &own, Arc::clone(&face)).await?;
-    let policy = policy(&config)?;
+    let policy = config.http.policy()?;
 
     let topics = VehicleTopics::new(&own, &leader);
     let mut tasks = JoinSet::new();
@@ -169,11 +169,6 @@ async fn finish(journal: Arc<Journal>) -> Report {
     let closing = Arc::clone(&journal);
     let finished = tokio::task::spawn_blocking(move || closing.finish(FINISH_WITHIN)).await;
     finished.unwrap_or_else(|_| journal.finish(Duration::ZERO))
-}
-
-fn policy(config: &FollowerConfig) -> Result<Policy, FollowerError> {
-    let token = config.http.token_file.as_deref().map(Token::from_file).transpose()?;
-    Ok(Policy { hosts: config.http.hosts.clone(), token, ..Policy::default() })
 }
 
 fn journal_options(config: &FollowerConfig) -> JournalOptions {

@@ -8,9 +8,7 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Extension, Json, Router};
-use http_face::{
-    Cameras, Check, Counters, Events, Picture, Problem, conditional, entity_tag, health, metrics_text, page,
-};
+use http_face::{Cameras, Check, Counters, Events, Picture, Problem, documents, health, metrics_text, page};
 use ingest::camera_thread::Registered;
 use recording::{Command, Journal};
 use tokio::sync::watch;
@@ -53,12 +51,11 @@ pub(crate) fn routes(face: Arc<Face>) -> Router {
         .route("/readyz", get(ready))
         .route("/metrics", get(metrics))
         .route("/api/v1/status", get(status))
-        .route("/api/v1/landmarks", get(landmarks))
-        .route("/api/v1/landmarks/{id}", get(landmark))
         .route("/api/v1/recorder", get(recorder))
         .route("/api/v1/recorder/{command}", post(command))
         .route("/api/v1/events", get(events))
-        .with_state(face)
+        .with_state(Arc::clone(&face))
+        .merge(landmarks(face))
         .merge(cameras)
         .merge(page())
 }
@@ -163,27 +160,6 @@ async fn status(State(face): Shared) -> Json<VehicleStatus> {
     Json(face.status().await)
 }
 
-async fn landmarks(State(face): Shared, headers: HeaderMap) -> Response {
-    let set = Arc::clone(&face.landmarks.borrow());
-    document(&headers, &set_document(&set))
-}
-
-async fn landmark(
-    State(face): Shared,
-    Path(id): Path<String>,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
-    let set = Arc::clone(&face.landmarks.borrow());
-    let landmark = set.landmarks.iter().find(|landmark| landmark.id == id);
-    let landmark = landmark.ok_or_else(|| Problem::not_found(&format!("landmark {id:?}")))?;
-    Ok(document(&headers, &landmark_document(landmark)))
-}
-
-fn document(request: &HeaderMap, value: &serde_json::Value) -> Response {
-    let content = value.to_string().into_bytes();
-    conditional(request, &entity_tag(&content), "application/json", content.into())
-}
-
 async fn recorder(State(face): Shared) -> Json<RecorderStatus> {
     Json(face.journal.status().into())
 }
@@ -201,4 +177,18 @@ async fn command(State(face): Shared, Path(command): Path<String>) -> Result<Res
 
 async fn events(State(face): Shared, headers: HeaderMap) -> Result<Response, Problem> {
     face.events.respond(&headers)
+}
+
+/// The landmarks in force.
+fn landmarks(face: Arc<Face>) -> Router {
+    let set = move || Arc::clone(&face.landmarks.borrow());
+    let of_one = set.clone();
+    documents(
+        "landmark",
+        "/api/v1/landmarks",
+        move || set_document(&set()),
+        move |id| {
+            of_one().landmarks.iter().find(|landmark| landmark.id == id).map(|it| landmark_document(it))
+        },
+    )
 }

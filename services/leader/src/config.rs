@@ -1,14 +1,19 @@
 //! What a leader is told at its start.
 
-use std::net::SocketAddr;
 use std::path::PathBuf;
 
+use http_face::HttpSettings;
 use runtime::SessionSettings;
 use runtime::telemetry::LogSettings;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use waymark_proto::keys::VehicleKeys;
+
+use crate::error::LeaderError;
+use crate::landmark_files::read_landmarks;
 
 /// One leader vehicle.
-#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct LeaderConfig {
     /// The fleet's id.
@@ -21,23 +26,24 @@ pub struct LeaderConfig {
     /// Where the start counter, the set as it was last, and the machine's id are kept.
     pub state_dir: PathBuf,
     /// The web face.
-    pub http: LeaderHttpConfig,
+    pub http: HttpSettings,
     /// How the others are reached.
     pub zenoh: SessionSettings,
     /// What is logged on standard error.
     pub log: LogSettings,
 }
 
-/// The web face of a leader.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize, Serialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct LeaderHttpConfig {
-    /// Address and port; beyond loopback it is read-only without a token.
-    pub listen: SocketAddr,
-    /// File that holds the bearer token for changes.
-    pub token_file: Option<PathBuf>,
-    /// Host names that are accepted besides IP addresses, localhost and the machine's name.
-    pub hosts: Vec<String>,
+impl LeaderConfig {
+    /// Looks whether a leader could start with this, as far as that can be told without the network.
+    ///
+    /// # Errors
+    /// As the leader's start.
+    pub fn check(&self) -> Result<(), LeaderError> {
+        VehicleKeys::new(&self.fleet, &self.vehicle)?;
+        self.http.policy()?;
+        read_landmarks(&self.landmarks)?;
+        Ok(())
+    }
 }
 
 impl Default for LeaderConfig {
@@ -47,15 +53,9 @@ impl Default for LeaderConfig {
             vehicle: "leader".to_owned(),
             landmarks: Vec::new(),
             state_dir: PathBuf::from("state/leader"),
-            http: LeaderHttpConfig::default(),
+            http: HttpSettings::on_loopback(8081),
             zenoh: SessionSettings::default(),
             log: LogSettings::default(),
         }
-    }
-}
-
-impl Default for LeaderHttpConfig {
-    fn default() -> Self {
-        Self { listen: SocketAddr::from(([127, 0, 0, 1], 8081)), token_file: None, hosts: Vec::new() }
     }
 }

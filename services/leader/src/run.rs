@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use http_face::{Policy, Token};
+use http_face::HttpSettings;
 use runtime::identity::unix_time_ns;
 use runtime::presence::{Presence, PresencePlace};
 use runtime::{Identity, Shutdown, StateDir};
@@ -21,7 +21,7 @@ use zenoh::query::Query;
 use crate::announcements::Announcements;
 use crate::answers::{Answers, answer_edit, edit_of};
 use crate::book::{Book, Edit, RefusedEdit};
-use crate::config::{LeaderConfig, LeaderHttpConfig};
+use crate::config::LeaderConfig;
 use crate::error::LeaderError;
 use crate::landmark_files::read_landmarks;
 use crate::memory::Memory;
@@ -101,7 +101,7 @@ impl Leader {
         let from_files = read_landmarks(&config.landmarks)?;
         let listener = listen(&config.http).await?;
         let page = listener.local_addr().unwrap_or(config.http.listen);
-        let policy = policy(&config.http)?;
+        let policy = config.http.policy()?;
         let state = StateDir::open(&config.state_dir)?;
         let identity = Identity::on(&state);
         let presence = announce(&session, &keys, &identity).await?;
@@ -295,12 +295,7 @@ fn instance_id(identity: &Identity) -> Result<Id, InvalidId> {
     Id::new("instance", &identity.instance)
 }
 
-async fn listen(http: &LeaderHttpConfig) -> Result<TcpListener, LeaderError> {
+async fn listen(http: &HttpSettings) -> Result<TcpListener, LeaderError> {
     let address = http.listen;
     TcpListener::bind(address).await.map_err(|source| LeaderError::Listen { address, source })
-}
-
-fn policy(http: &LeaderHttpConfig) -> Result<Policy, LeaderError> {
-    let token = http.token_file.as_deref().map(Token::from_file).transpose()?;
-    Ok(Policy { hosts: http.hosts.clone(), token, ..Policy::default() })
 }

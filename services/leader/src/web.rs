@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use axum::extract::{Path, State};
-use axum::http::HeaderMap;
+use axum::extract::State;
 use axum::response::Response;
 use axum::routing::get;
 use axum::{Extension, Json, Router};
-use http_face::{Check, Counters, Problem, conditional, entity_tag, health, metrics_text, page};
+use http_face::{Check, Counters, documents, health, metrics_text, page};
 use metrics::{counter, gauge};
 use metrics_exporter_prometheus::PrometheusBuilder;
 use runtime::Identity;
@@ -39,9 +38,8 @@ pub(crate) fn routes(face: Arc<Face>) -> Router {
         .route("/readyz", get(ready))
         .route("/metrics", get(metrics))
         .route("/api/v1/status", get(status))
-        .route("/api/v1/landmarks", get(landmarks))
-        .route("/api/v1/landmarks/{id}", get(landmark))
-        .with_state(face)
+        .with_state(Arc::clone(&face))
+        .merge(landmarks(face))
         .merge(page())
 }
 
@@ -102,23 +100,16 @@ async fn metrics(State(face): Shared, Extension(refusals): Extension<Arc<Counter
     metrics_text(recorder.handle().render())
 }
 
-async fn landmarks(State(face): Shared, headers: HeaderMap) -> Response {
-    let set = Arc::clone(&face.publications.borrow().set);
-    document(&headers, &set_document(&set))
-}
-
-async fn landmark(
-    State(face): Shared,
-    Path(id): Path<String>,
-    headers: HeaderMap,
-) -> Result<Response, Problem> {
-    let set = Arc::clone(&face.publications.borrow().set);
-    let landmark = set.landmarks.iter().find(|landmark| landmark.id == id);
-    let landmark = landmark.ok_or_else(|| Problem::not_found(&format!("landmark {id:?}")))?;
-    Ok(document(&headers, &landmark_document(landmark)))
-}
-
-fn document(request: &HeaderMap, value: &serde_json::Value) -> Response {
-    let content = value.to_string().into_bytes();
-    conditional(request, &entity_tag(&content), "application/json", content.into())
+/// The landmarks in force.
+fn landmarks(face: Arc<Face>) -> Router {
+    let set = move || Arc::clone(&face.publications.borrow().set);
+    let of_one = set.clone();
+    documents(
+        "landmark",
+        "/api/v1/landmarks",
+        move || set_document(&set()),
+        move |id| {
+            of_one().landmarks.iter().find(|landmark| landmark.id == id).map(|it| landmark_document(it))
+        },
+    )
 }

@@ -6,8 +6,8 @@ use std::net::TcpListener;
 use std::path::Path;
 use std::time::Duration;
 
+use http_face::HttpSettings;
 use leader::client::{ClientError, LandmarkClient};
-use leader::config::LeaderHttpConfig;
 use leader::landmark_files::{read_landmarks, write_landmarks};
 use leader::{Edit, Leader, LeaderConfig, LeaderError, Others};
 use runtime::presence::PresenceError;
@@ -72,10 +72,9 @@ impl Field {
     }
 
     fn config(&self, state: &str) -> LeaderConfig {
-        let listen = ([127, 0, 0, 1], 0).into();
         LeaderConfig {
             state_dir: self.path(state),
-            http: LeaderHttpConfig { listen, ..LeaderHttpConfig::default() },
+            http: HttpSettings::on_loopback(0),
             ..LeaderConfig::default()
         }
     }

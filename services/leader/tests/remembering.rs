@@ -6,8 +6,8 @@ use std::net::TcpListener;
 use std::path::Path;
 use std::time::Duration;
 
+use http_face::HttpSettings;
 use leader::client::{ClientError, LandmarkClient};
-use leader::config::LeaderHttpConfig;
 use leader::store::Store;
 use leader::{Edit, Leader, LeaderConfig};
 use runtime::{SessionSettings, Shutdown};
@@ -77,7 +77,7 @@ async fn the_sets_of_leaders_that_left_are_answered_for() {
 
     let config = LeaderConfig {
         state_dir: place.path().join("leader"),
-        http: LeaderHttpConfig { listen: ([127, 0, 0, 1], 0).into(), ..LeaderHttpConfig::default() },
+        http: HttpSettings::on_loopback(0),
         ..LeaderConfig::default()
     };
     let (session, shutdown) = (SessionSettings::client(&endpoint).open().await.unwrap(), Shutdown::new());

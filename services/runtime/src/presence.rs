@@ -12,6 +12,7 @@
 //! Two that could not hear each other are both established. Once they can, each sees the other's token, and the rule
 //! for two that start together decides who leaves: [`Presence::superseded`].
 
+mod members;
 mod tokens;
 
 use std::sync::Arc;
@@ -32,6 +33,8 @@ use crate::reply::{Answer, reply};
 use crate::session::is_router_connected;
 use crate::shutdown::Shutdown;
 pub use tokens::TokenWatch;
+
+pub use members::{Member, members};
 
 /// How long others have to answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(1);
@@ -213,7 +216,7 @@ async fn first_before(
 /// # Errors
 /// When Zenoh refuses the query.
 pub async fn who_is_there(session: &Session, key_expression: &str) -> zenoh::Result<Vec<Introduction>> {
-    Ok(ask(session, key_expression).await?.into_iter().map(|(introduction, _)| introduction).collect())
+    Ok(ask(session, key_expression).await?.into_iter().map(|heard| heard.introduction).collect())
 }
 
 /// How far the clock of the process at `key_expression` is off; `None` when nobody answers.
@@ -223,7 +226,7 @@ pub async fn who_is_there(session: &Session, key_expression: &str) -> zenoh::Res
 pub async fn clock_offset(session: &Session, key_expression: &str) -> zenoh::Result<Option<ClockOffset>> {
     let mut exchanges = Vec::new();
     for _ in 0..CLOCK_EXCHANGES {
-        exchanges.extend(ask(session, key_expression).await?.into_iter().map(|(_, exchange)| exchange));
+        exchanges.extend(ask(session, key_expression).await?.into_iter().map(|heard| heard.exchange));
     }
     Ok(best_offset(exchanges))
 }
@@ -277,7 +280,14 @@ fn introduce(query: &Query, key: KeyExpr<'static>, mut own: Introduction) {
     reply(query, Answer { key, payload, encoding: Encoding::APPLICATION_JSON, attachment: None });
 }
 
-async fn ask(session: &Session, key_expression: &str) -> zenoh::Result<Vec<(Introduction, Exchange)>> {
+/// One answer.
+struct Heard {
+    key: String,
+    introduction: Introduction,
+    exchange: Exchange,
+}
+
+async fn ask(session: &Session, key_expression: &str) -> zenoh::Result<Vec<Heard>> {
     let asked_at_ns = unix_time_ns();
     let replies = session
         .get(key_expression)
@@ -292,9 +302,10 @@ async fn ask(session: &Session, key_expression: &str) -> zenoh::Result<Vec<(Intr
         let heard_at_ns = unix_time_ns();
         let Ok(sample) = reply.into_result() else { continue };
         match serde_json::from_slice::<Introduction>(&sample.payload().to_bytes()) {
-            Ok(other) => {
-                let (received_at_ns, answered_at_ns) = (other.received_at_ns, other.answered_at_ns);
-                answers.push((other, Exchange { asked_at_ns, received_at_ns, answered_at_ns, heard_at_ns }));
+            Ok(introduction) => {
+                let Introduction { received_at_ns, answered_at_ns, .. } = introduction;
+                let exchange = Exchange { asked_at_ns, received_at_ns, answered_at_ns, heard_at_ns };
+                answers.push(Heard { key: sample.key_expr().to_string(), introduction, exchange });
             }
             Err(error) => {
                 tracing::warn!(key = %sample.key_expr(), %error, "an introduction cannot be read");

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use zenoh::{Config, Session};
 
@@ -11,7 +12,7 @@ use zenoh::{Config, Session};
 /// A vehicle's processes are routers that usually listen nowhere: unlike clients they start whether or not anybody can
 /// be reached, and unlike peers they hear of each other through a router between them, which counts on peers being
 /// connected directly (Zenoh 1.10, "regions").
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
     /// Starts without waiting, connects to `connect` as soon as it can and again whenever it must, and routes between
@@ -25,7 +26,7 @@ pub enum Mode {
 }
 
 /// The `zenoh` part of a configuration.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SessionSettings {
     /// Place in the network.
@@ -70,6 +71,15 @@ const ATTEMPT: Duration = Duration::from_secs(3);
 /// Zenoh's word for a connection that is tried for as long as the session lives.
 const FOR_EVER: i64 = -1;
 
+/// Zenoh's words without the place in its own source that it ends them with.
+fn words(error: &zenoh::Error) -> String {
+    let text = error.to_string();
+    match text.rsplit_once(" at ") {
+        Some((words, place)) if place.contains(".rs:") => words.to_owned(),
+        _ => text,
+    }
+}
+
 /// Why there is no session.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
@@ -81,7 +91,7 @@ pub enum SessionError {
         /// Its value.
         value: String,
         /// Zenoh's words.
-        reason: zenoh::Error,
+        reason: String,
     },
     /// The JSON5 file cannot be used.
     #[error("the Zenoh configuration {path}: {reason}")]
@@ -89,7 +99,7 @@ pub enum SessionError {
         /// The file.
         path: PathBuf,
         /// Zenoh's words.
-        reason: zenoh::Error,
+        reason: String,
     },
     /// The session did not open.
     #[error("no Zenoh session ({place}): {reason}; is the router running, and does it listen there?")]
@@ -97,7 +107,7 @@ pub enum SessionError {
         /// Where it was to connect and listen.
         place: String,
         /// Zenoh's words.
-        reason: zenoh::Error,
+        reason: String,
     },
     /// Opening took too long.
     #[error(
@@ -130,20 +140,56 @@ impl SessionSettings {
         Self { mode: Mode::Client, ..Self::vehicle(router) }
     }
 
+    /// Looks whether Zenoh takes these settings, without opening anything.
+    ///
+    /// # Errors
+    /// The setting or file that it does not take.
+    pub fn check(&self) -> Result<(), SessionError> {
+        self.zenoh_config().map(drop)
+    }
+
     /// Opens the session.
     ///
     /// # Errors
     /// When a setting is not accepted, an endpoint cannot be listened on, or a client does not reach its router in
     /// time. Routers and peers open whether or not anybody is there.
     pub async fn open(&self) -> Result<Session, SessionError> {
-        let config = self.zenoh_config()?;
+        self.opened(self.zenoh_config()?).await
+    }
+
+    async fn opened(&self, config: Config) -> Result<Session, SessionError> {
         let timeout = self.open_timeout();
         // Zenoh keeps the time itself where it waits for a router; this is for whatever else takes long.
         match tokio::time::timeout(timeout + Duration::from_secs(1), zenoh::open(config)).await {
             Ok(Ok(session)) => Ok(session),
-            Ok(Err(reason)) => Err(SessionError::Open { place: self.place(), reason }),
+            Ok(Err(error)) => Err(SessionError::Open { place: self.place(), reason: words(&error) }),
             Err(_) => Err(SessionError::Timeout { place: self.place(), timeout_s: timeout.as_secs_f64() }),
         }
+    }
+
+    /// Opens a session that takes the same way to the others and only looks around: a client, which listens nowhere
+    /// and so does not get in the way of the service with these settings.
+    ///
+    /// # Errors
+    /// As [`Self::open`], and when nobody can be reached.
+    pub async fn visit(&self) -> Result<Session, SessionError> {
+        let mut config = self.zenoh_config()?;
+        let timeout_ms = i64::try_from(self.open_timeout().as_millis()).unwrap_or(i64::MAX);
+        for (key, value) in [
+            // A list, or one for each mode: taken before the mode is another.
+            ("connect/endpoints", endpoints_of_own_mode(&config)),
+            ("mode", json(&"client")),
+            ("connect/timeout_ms", json(&timeout_ms)),
+            ("connect/exit_on_failure", json(&true)),
+            ("listen/endpoints", json(&[""; 0])),
+        ] {
+            config.insert_json5(key, &value).map_err(|error| SessionError::Setting {
+                setting: "file",
+                value,
+                reason: words(&error),
+            })?;
+        }
+        self.opened(config).await
     }
 
     fn open_timeout(&self) -> Duration {
@@ -160,7 +206,7 @@ impl SessionSettings {
     fn zenoh_config(&self) -> Result<Config, SessionError> {
         if let Some(path) = &self.file {
             return Config::from_file(path)
-                .map_err(|reason| SessionError::File { path: path.clone(), reason });
+                .map_err(|error| SessionError::File { path: path.clone(), reason: words(&error) });
         }
         let mode = match self.mode {
             Mode::Client => "client",
@@ -186,14 +232,25 @@ impl SessionSettings {
             ("mode", "transport/link/tx/lease", json(&LEASE.as_millis())),
             ("mode", "transport/link/rx/max_message_size", json(&MAX_MESSAGE_BYTES)),
         ] {
-            config.insert_json5(key, &value).map_err(|reason| SessionError::Setting {
+            config.insert_json5(key, &value).map_err(|error| SessionError::Setting {
                 setting,
                 value,
-                reason,
+                reason: words(&error),
             })?;
         }
         Ok(config)
     }
+}
+
+/// The endpoints to connect to, where a configuration may name others for each mode.
+fn endpoints_of_own_mode(config: &Config) -> String {
+    let read = |key: &str| {
+        let text = config.get_json(key).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or(serde_json::Value::Null)
+    };
+    let (mode, endpoints) = (read("mode"), read("connect/endpoints"));
+    let of_mode = endpoints.get(mode.as_str().unwrap_or("peer")).unwrap_or(&endpoints);
+    if of_mode.is_array() { of_mode.to_string() } else { json(&[""; 0]) }
 }
 
 /// Whether a router is connected at this moment.
@@ -221,6 +278,20 @@ mod tests {
         let settings = SessionSettings { file: Some("no-such.json5".into()), ..SessionSettings::default() };
         let error = settings.zenoh_config().unwrap_err().to_string();
         assert!(error.contains("no-such.json5"), "{error}");
+    }
+
+    #[test]
+    fn a_visitor_takes_the_endpoints_of_the_mode_that_it_stands_in_for() {
+        let endpoints = |connect: &str| {
+            let text = format!("{{ mode: 'router', connect: {{ endpoints: {connect} }} }}");
+            endpoints_of_own_mode(&Config::from_json5(&text).unwrap())
+        };
+        assert_eq!(endpoints("['tcp/127.0.0.1:1']"), r#"["tcp/127.0.0.1:1"]"#);
+        assert_eq!(
+            endpoints("{ router: ['tcp/127.0.0.1:2'], client: ['tcp/127.0.0.1:3'] }"),
+            r#"["tcp/127.0.0.1:2"]"#
+        );
+        assert_eq!(endpoints("{ client: ['tcp/127.0.0.1:3'] }"), "[]");
     }
 
     #[test]

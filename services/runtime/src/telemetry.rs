@@ -2,13 +2,14 @@
 
 use std::io::IsTerminal;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use tracing_subscriber::EnvFilter;
 use tracing_subscriber::filter::ParseError;
 use tracing_subscriber::util::{SubscriberInitExt, TryInitError};
 
 /// What a line of log looks like.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum LogFormat {
     /// For people.
@@ -19,7 +20,7 @@ pub enum LogFormat {
 }
 
 /// The `log` part of a configuration.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct LogSettings {
     /// What a line looks like.
@@ -51,13 +52,27 @@ pub enum TelemetryError {
     LoggingTwice(#[from] TryInitError),
 }
 
+impl LogSettings {
+    /// Looks whether the filter is one.
+    ///
+    /// # Errors
+    /// When it is none.
+    pub fn check(&self) -> Result<(), TelemetryError> {
+        self.env_filter().map(drop)
+    }
+
+    fn env_filter(&self) -> Result<EnvFilter, TelemetryError> {
+        EnvFilter::try_new(&self.filter)
+            .map_err(|source| TelemetryError::Filter { filter: self.filter.clone(), source })
+    }
+}
+
 /// Starts logging on standard error, for the whole process.
 ///
 /// # Errors
 /// When the filter is none, or the process logs already.
 pub fn start_logging(settings: &LogSettings) -> Result<(), TelemetryError> {
-    let filter = EnvFilter::try_new(&settings.filter)
-        .map_err(|source| TelemetryError::Filter { filter: settings.filter.clone(), source })?;
+    let filter = settings.env_filter()?;
     let lines = tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_ansi(std::io::stderr().is_terminal())

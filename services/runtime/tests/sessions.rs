@@ -5,7 +5,7 @@
 use std::net::TcpListener;
 use std::time::Duration;
 
-use runtime::presence::{Presence, PresenceError, PresencePlace, clock_offset, who_is_there};
+use runtime::presence::{Presence, PresenceError, PresencePlace, clock_offset, members, who_is_there};
 use runtime::{Identity, SessionSettings, Shutdown, StateDir};
 use tokio::time::timeout;
 
@@ -57,6 +57,7 @@ async fn a_client_without_a_router_fails_in_time_and_says_where() {
     let settings = SessionSettings { open_timeout_s: 0.3, ..SessionSettings::client(&endpoint) };
     let error = timeout(LONG, settings.open()).await.unwrap().unwrap_err().to_string();
     assert!(error.contains(&endpoint) && error.contains("is the router running"), "{error}");
+    assert!(!error.contains(".rs:"), "a place in Zenoh's source: {error}");
 }
 
 #[tokio::test(flavor = "multi_thread")]
@@ -151,4 +152,20 @@ async fn of_two_that_could_not_hear_each_other_the_later_leaves_once_they_can() 
     let there = who_is_there(&late.1, &place("").siblings).await.unwrap();
     assert!(there.iter().any(|process| process.instance == early.3.instance), "{there:?}");
     assert!(timeout(Duration::from_millis(1), early.4.superseded()).await.is_err());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn members_are_those_who_answer_and_those_who_are_only_announced() {
+    let endpoint = free_endpoint();
+    let _router = SessionSettings::router(&endpoint).open().await.unwrap();
+    let places = tempfile::tempdir().unwrap();
+    let identity = Identity::on(&StateDir::open(places.path()).unwrap());
+    let there = SessionSettings::client(&endpoint).open().await.unwrap();
+    let _answers = Presence::claim(&there, &place(&identity.instance), &identity, "1.2.3").await.unwrap();
+    let _silent = there.liveliness().declare_token("@waymark/v1/rink/v2/leader/silent").await.unwrap();
+    let asking = SessionSettings::vehicle(&endpoint).visit().await.unwrap();
+    let found = members(&asking, "@waymark/v1/rink/*/*/*").await.unwrap();
+    let versions: Vec<_> = found.iter().map(|one| one.introduction.as_ref().map(|it| &*it.version)).collect();
+    assert_eq!(versions, [Some("1.2.3"), None], "{found:?}");
+    assert!(found[0].clock.is_some() && found[1].clock.is_none(), "{found:?}");
 }
