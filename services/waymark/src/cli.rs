@@ -3,7 +3,8 @@
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    camera, completion, demo, explain, follower, landmark, leader, recording, register, router,
+    camera, completion, config, demo, doctor, explain, follower, landmark, leader, recording, register,
+    router,
 };
 
 /// What stands below the options.
@@ -40,6 +41,9 @@ pub(crate) enum Command {
     Explain(explain::Args),
     #[command(subcommand)]
     Recording(recording::Command),
+    Doctor(doctor::Args),
+    #[command(subcommand)]
+    Config(config::Command),
     Completion(completion::Args),
 }
 

@@ -2,7 +2,9 @@
 
 pub(crate) mod camera;
 pub(crate) mod completion;
+pub(crate) mod config;
 pub(crate) mod demo;
+pub(crate) mod doctor;
 pub(crate) mod explain;
 pub(crate) mod follower;
 pub(crate) mod landmark;
@@ -29,6 +31,8 @@ pub(crate) fn run(cli: Cli) -> Result<Ending, Failure> {
         Command::Recording(command) => recording::run(command, console),
         Command::Explain(args) => explain::run(&args),
         Command::Register(args) => register::run(&args, console),
+        Command::Doctor(args) => doctor::run(&args, console),
+        Command::Config(command) => config::run(&command, console),
         Command::Completion(args) => completion::run(&args),
     }
 }

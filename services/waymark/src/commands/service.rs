@@ -27,6 +27,11 @@ pub(crate) struct ConfigArgs {
 impl ConfigArgs {
     /// The configuration from all its layers.
     pub(crate) fn read<C: Serialize + DeserializeOwned + Default>(&self) -> Result<C, Failure> {
+        self.layers::<C>()?.extract().or_usage()
+    }
+
+    /// The layers themselves, each key with the place that sets it.
+    pub(crate) fn layers<C: Serialize + Default>(&self) -> Result<Layers, Failure> {
         let mut layers = Layers::of_defaults(&C::default()).or_usage()?;
         for file in &self.files {
             layers = layers.file(file).or_usage()?;
@@ -35,7 +40,7 @@ impl ConfigArgs {
         for assignment in &self.assignments {
             layers = layers.set(assignment).or_usage()?;
         }
-        layers.extract().or_usage()
+        Ok(layers)
     }
 }
 

@@ -2,6 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // in a test, a panic with its place is the report
 
+mod access;
+mod config;
+mod convoy;
+mod doctor;
 mod landmarks;
 mod program;
 mod recordings;

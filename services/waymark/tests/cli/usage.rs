@@ -5,7 +5,7 @@ use crate::program::waymark;
 #[test]
 fn help_lists_every_command_and_the_exit_codes() {
     let help = waymark(["--help"]).ended(0).stdout;
-    for command in ["landmark", "register", "explain", "recording", "completion"] {
+    for command in ["landmark", "register", "explain", "recording", "doctor", "config", "completion"] {
         assert!(help.lines().any(|line| line.trim_start().starts_with(command)), "{command}: {help}");
     }
     assert!(help.contains("0 fine, 1 failed, 2 usage or configuration, 3 finished with data lost"), "{help}");
@@ -20,6 +20,11 @@ fn every_command_explains_itself() {
         &["recording", "info"],
         &["recording", "check"],
         &["recording", "recover"],
+        &["doctor"],
+        &["config", "show"],
+        &["config", "check"],
+        &["config", "schema"],
+        &["config", "acl"],
         &["completion"],
     ] {
         let help = waymark([command, &["--help"]].concat()).ended(0).stdout;
@@ -38,6 +43,8 @@ fn mistakes_are_usage_errors() {
 fn completion_knows_the_commands() {
     for shell in ["bash", "zsh", "fish"] {
         let script = waymark(["completion", shell]).ended(0).stdout;
-        assert!(script.contains("recover"), "{shell}");
+        for command in ["recover", "doctor", "schema", "acl"] {
+            assert!(script.contains(command), "{shell}: {command}");
+        }
     }
 }
