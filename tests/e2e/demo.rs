@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Duration;
 
 use recording::info::Info;
 use serde_json::Value;
@@ -91,7 +90,7 @@ fn sigterm_finishes_the_recording_while_clients_are_attached() {
     let _pictures = demo.face.stream(&format!("/api/v1/cameras/{camera}/stream.mjpeg"));
     demo.program.terminate();
     let Demo { program, recordings, .. } = demo;
-    let ended = program.ended_within(Duration::from_secs(10));
+    let ended = program.ended_within(DEADLINE);
     assert_eq!(ended.code, Some(0), "{}", ended.transcript());
     let files: Vec<_> =
         std::fs::read_dir(recordings.path()).unwrap().map(|entry| entry.unwrap().path()).collect();
