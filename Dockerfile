@@ -4,7 +4,8 @@
 #   docker build -t waymark --target prebuilt -f Dockerfile DIR takes DIR/waymark, a static binary already built:
 #       RUSTFLAGS='-C target-feature=+crt-static' cargo build --release -p waymark --target x86_64-unknown-linux-gnu
 #
-# The order of the stages lets builders that build every stage up to the target do no more than they must.
+# Docker's older builder builds every stage up to its target. So the stage that compiles comes after `prebuilt`, and
+# `prebuilt` takes a binary only where there is one: brackets make a name a pattern, which may match nothing.
 
 FROM busybox:1.36 AS base
 # Volumes take over these directories with their owner. 65532 is the number that images without users agree on.
@@ -17,7 +18,7 @@ ENTRYPOINT ["/usr/local/bin/waymark"]
 CMD ["--help"]
 
 FROM base AS prebuilt
-COPY waymark /usr/local/bin/waymark
+COPY Cargo.tom[l] waymar[k] /usr/local/bin/
 
 FROM rust:1.95-slim-bookworm AS build
 # zstd and ring are C and assembly.

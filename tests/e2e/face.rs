@@ -1,15 +1,12 @@
 //! The web face of a running vehicle, as a client sees it.
 
 use std::io::{BufRead, BufReader, Read};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde_json::Value;
 use ureq::{Agent, Body, http::Response};
 
-use crate::DEADLINE;
-
-/// Nobody announces the moment at which a port is opened, so it is tried again and again.
-const BETWEEN_ATTEMPTS: Duration = Duration::from_millis(50);
+use crate::{DEADLINE, until};
 
 /// A vehicle's address.
 #[derive(Clone, Debug)]
@@ -44,11 +41,7 @@ impl Face {
     /// When nobody ever does.
     #[must_use]
     pub fn once_reachable(self) -> Self {
-        let deadline = Instant::now() + DEADLINE;
-        while let Err(error) = self.agent.get(format!("{}/livez", self.root)).call() {
-            assert!(Instant::now() < deadline, "GET {}/livez: {error}", self.root);
-            std::thread::park_timeout(BETWEEN_ATTEMPTS);
-        }
+        until("somebody listens", || self.agent.get(format!("{}/livez", self.root)).call().ok());
         self
     }
 
@@ -91,6 +84,14 @@ impl Face {
             }
         }
         document
+    }
+
+    /// Asks for a document of a vehicle without events again and again until it satisfies `wanted`.
+    ///
+    /// # Panics
+    /// When it never does.
+    pub fn polled(&self, path: &str, wanted: impl Fn(&Value) -> bool) -> Value {
+        until(path, || Some(self.json(path)).filter(&wanted))
     }
 
     /// Begins to read an answer without end.

@@ -7,7 +7,7 @@ pub mod program;
 
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// When a wait is given up. Far beyond what anything takes, so that a busy machine does not fail a test.
 pub const DEADLINE: Duration = Duration::from_secs(60);
@@ -43,4 +43,22 @@ pub fn free_address() -> String {
     let listener = TcpListener::bind(("127.0.0.1", 0));
     let address = listener.and_then(|listener| listener.local_addr());
     address.unwrap_or_else(|error| panic!("no free address: {error}")).to_string()
+}
+
+/// Pause between two looks at something that announces nothing.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+
+/// Looks again and again until there is something to see: for what nobody tells the moment of.
+///
+/// # Panics
+/// When there never is.
+pub fn until<T>(what: &str, look: impl Fn() -> Option<T>) -> T {
+    let deadline = Instant::now() + DEADLINE;
+    loop {
+        if let Some(seen) = look() {
+            return seen;
+        }
+        assert!(Instant::now() < deadline, "{what}: not within {DEADLINE:?}");
+        std::thread::park_timeout(BETWEEN_LOOKS);
+    }
 }

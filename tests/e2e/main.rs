@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // all of this is test code: the lints know only #[test] functions
 
+mod convoy;
 mod crash;
 mod demo;
 mod dependency_rule;
 mod documented_commands;
+mod fleet;
 mod landmarks;

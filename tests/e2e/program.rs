@@ -74,6 +74,12 @@ impl Program {
         self.notes.first_with(text)
     }
 
+    /// The operating system's number of the process.
+    #[must_use]
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Asks it to end, as a service manager does.
     ///
     /// # Panics
@@ -88,6 +94,31 @@ impl Program {
     /// When the signal cannot be sent.
     pub fn kill(&self) {
         self.signal(Signal::KILL);
+    }
+
+    /// Ends it at once and waits until nothing is left of it: until then the kernel still holds its locks.
+    ///
+    /// # Panics
+    /// When the signal cannot be sent, or it does not end.
+    pub fn cut_power(self) {
+        self.kill();
+        let _ended_by_a_signal = self.ended_within(DEADLINE);
+    }
+
+    /// Stops it where it is: its connections stay, and it neither reads nor answers.
+    ///
+    /// # Panics
+    /// When the signal cannot be sent.
+    pub fn freeze(&self) {
+        self.signal(Signal::STOP);
+    }
+
+    /// Lets it go on.
+    ///
+    /// # Panics
+    /// When the signal cannot be sent.
+    pub fn thaw(&self) {
+        self.signal(Signal::CONT);
     }
 
     /// Waits for its end.

@@ -73,8 +73,13 @@ impl Station {
         self.thread.registered()
     }
 
+    /// How the camera is now.
     pub(crate) fn status(&self) -> CameraStatus {
-        let newest = self.latest.borrow().clone();
+        self.status_with(self.latest.borrow().clone())
+    }
+
+    /// How the camera was when `newest` was its newest frame: by the time a frame is told of there may be another.
+    pub(crate) fn status_with(&self, newest: Option<Arc<Registered>>) -> CameraStatus {
         let age = newest.as_ref().map(|newest| newest.finished_at.elapsed());
         CameraStatus {
             id: self.id.clone(),

@@ -43,7 +43,7 @@ pub struct LeaderStatus {
 /// The way to the others.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct RouterStatus {
-    /// Whether at least one router or peer is connected.
+    /// Whether at least one router is connected; where this vehicle is itself a peer, a router or another peer.
     pub connected: bool,
 }
 

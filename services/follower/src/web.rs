@@ -11,6 +11,7 @@ use axum::{Extension, Json, Router};
 use http_face::{Cameras, Check, Counters, Events, Picture, Problem, documents, health, metrics_text, page};
 use ingest::camera_thread::Registered;
 use recording::{Command, Journal};
+use runtime::session::{Mode, is_router_connected};
 use tokio::sync::watch;
 use vision::LandmarkSet;
 use waymark_proto::documents::{landmark_document, set_document};
@@ -34,6 +35,7 @@ pub(crate) struct Face {
     pub(crate) instance: String,
     pub(crate) started_at: Instant,
     pub(crate) session: Session,
+    pub(crate) mode: Mode,
     pub(crate) landmarks: watch::Receiver<Arc<LandmarkSet>>,
     pub(crate) leader: LeaderWatch,
     pub(crate) stations: Vec<Arc<Station>>,
@@ -76,6 +78,7 @@ impl Face {
             instance,
             started_at: Instant::now(),
             session: session.clone(),
+            mode: config.zenoh.mode,
             landmarks: feed.landmarks(),
             leader,
             stations: posts.iter().map(Post::station).collect(),
@@ -86,9 +89,12 @@ impl Face {
         }
     }
 
+    /// Whether there is a way to the others. A peer that is connected is one only for peers: elsewhere it is this
+    /// vehicle's own camera.
     pub(crate) async fn connected(&self) -> bool {
-        let info = self.session.info();
-        info.routers_zid().await.next().is_some() || info.peers_zid().await.next().is_some()
+        let with_peers = self.mode == Mode::Peer;
+        is_router_connected(&self.session).await
+            || (with_peers && self.session.info().peers_zid().await.next().is_some())
     }
 
     pub(crate) async fn status(&self) -> VehicleStatus {
@@ -108,7 +114,8 @@ impl Face {
     /// Shows a registered frame to whoever looks.
     pub(crate) fn show(&self, station: &Station, registered: Arc<Registered>) {
         station.count_frame(registered.finished_at);
-        if let Err(error) = self.events.publish("camera", &station.status()) {
+        let status = station.status_with(Some(Arc::clone(&registered)));
+        if let Err(error) = self.events.publish("camera", &status) {
             tracing::error!(%error, "an event could not be written as JSON");
         }
         if let Some(feed) = self.cameras.feed(station.id()) {
@@ -124,7 +131,10 @@ impl Face {
     async fn checks(&self) -> Vec<Check> {
         let mut checks = vec![match self.connected().await {
             true => Check::pass("router", "connected"),
-            false => Check::fail("router", "no router or peer is connected; is `waymark router` reachable?"),
+            false => Check::fail(
+                "router",
+                "no router is connected; is `waymark router` running where zenoh.connect says?",
+            ),
         }];
         checks.extend(self.stations.iter().map(|station| match station.liveness() {
             Ok(age) => Check::pass(
