@@ -18,6 +18,7 @@ export function items() {
   }
   return [
     ...(status.leader ? [leader(status.leader)] : []),
+    ...(status.leader?.clock ? [clock(status.leader.clock)] : []),
     ...(status.role === "follower" ? cameras() : []),
     ...(status.router ? [router(status.router)] : []),
     ...(status.recorder ? [recorder(status.recorder)] : []),
@@ -43,6 +44,14 @@ function leader(leader) {
   }
   if (age === null) return { name, level: "warn", words: "never heard" };
   return { name, level: "warn", words: `absent, last heard ${ago(age)}` };
+}
+
+/** Words that change only when a person should know. @param {any} clock @returns {Item} */
+function clock(clock) {
+  const name = "Leader's clock";
+  if (clock.in_step) return { name, level: "good", words: "in step with this vehicle's" };
+  const direction = clock.offset_ms > 0 ? "ahead of" : "behind";
+  return { name, level: "warn", words: `${duration(Math.abs(clock.offset_ms) / 1000)} ${direction} this vehicle's` };
 }
 
 /** @returns {Item[]} */

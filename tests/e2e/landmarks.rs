@@ -25,6 +25,25 @@ fn await_landmarks(face: &Face, wanted: &[(&str, f64)]) {
     });
 }
 
+/// Both processes run on this machine, so their clocks differ by no more than the measurement may be wrong.
+fn await_clocks(face: &Face) {
+    let has_clock = |member: &Value| member["clock"]["in_step"] == true && member["answers"] == true;
+    face.json_once("/api/v1/fleet", |fleet| {
+        let members = fleet["members"].as_array().cloned().unwrap_or_default();
+        let names: Vec<_> = members.iter().map(|one| format!("{}/{}", one["vehicle"], one["role"])).collect();
+        members.iter().all(has_clock) && names == [r#""follower"/"follower""#, r#""leader"/"leader""#]
+    });
+    let status = face.json_once("/api/v1/status", |status| status["leader"]["clock"].is_object());
+    let clock = &status["leader"]["clock"];
+    let (offset_ms, uncertainty_ms) = (&clock["offset_ms"], &clock["uncertainty_ms"]);
+    assert!(offset_ms.as_f64().unwrap().abs() <= uncertainty_ms.as_f64().unwrap() + 0.001, "{clock}");
+    let metrics = String::from_utf8(face.get("/metrics").body).unwrap();
+    assert!(
+        metrics.contains("waymark_clock_offset_seconds{vehicle=\"leader\",role=\"leader\"}"),
+        "{metrics}"
+    );
+}
+
 #[test]
 fn landmarks_of_before_during_and_while_away_all_end_up_right() {
     let place = Place::new();
@@ -36,6 +55,7 @@ fn landmarks_of_before_during_and_while_away_all_end_up_right() {
 
     let (follower, face) = place.start_follower("follower", &[]);
     await_landmarks(&face, &[("blue", 20.0), ("red", 120.0)]);
+    await_clocks(&face);
 
     place.edit(&publish([landmark("red", 140.0)]));
     await_landmarks(&face, &[("blue", 20.0), ("red", 140.0)]);

@@ -6,14 +6,16 @@ use waymark_proto::keys::{PresenceKey, Role, VehicleKeys};
 use zenoh::Session;
 
 use crate::error::FollowerError;
+use crate::fleet_watch::FleetWatch;
 use crate::landmark_feed::LastHeard;
-use crate::status::LeaderStatus;
+use crate::status::{ClockStatus, LeaderStatus};
 
 /// Watches the liveliness tokens of one vehicle in the role of leader.
 pub(crate) struct LeaderWatch {
     vehicle: String,
     tokens: TokenWatch,
     last_heard: LastHeard,
+    fleet: FleetWatch,
 }
 
 impl LeaderWatch {
@@ -22,11 +24,17 @@ impl LeaderWatch {
         session: &Session,
         leader: &VehicleKeys,
         last_heard: LastHeard,
+        fleet: FleetWatch,
     ) -> Result<Self, FollowerError> {
         let key = PresenceKey::of_role(leader.fleet(), leader.vehicle(), Role::Leader);
         let watching = TokenWatch::begin(session, &key).await;
         let tokens = watching.map_err(FollowerError::zenoh("watching for the leader"))?;
-        Ok(Self { vehicle: leader.vehicle().to_string(), tokens, last_heard })
+        Ok(Self { vehicle: leader.vehicle().to_string(), tokens, last_heard, fleet })
+    }
+
+    /// Everyone in the fleet, the leader among them.
+    pub(crate) fn fleet(&self) -> &FleetWatch {
+        &self.fleet
     }
 
     /// A token outlives its process where that has only stopped, and a manifest comes every second: whoever was not
@@ -38,6 +46,7 @@ impl LeaderWatch {
             vehicle: self.vehicle.clone(),
             present: !silent && !self.tokens.tokens().borrow().is_empty(),
             age_s: heard.map(|heard| heard.at.elapsed().as_secs_f64()),
+            clock: self.fleet.clock(&self.vehicle, Role::Leader).map(ClockStatus::from),
             missed: heard.and_then(|heard| heard.missed),
         }
     }

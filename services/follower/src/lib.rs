@@ -9,6 +9,7 @@ mod calibration;
 pub mod config;
 mod counters;
 mod error;
+mod fleet_watch;
 mod fps;
 mod intake;
 mod landmark_feed;

@@ -10,11 +10,12 @@ use metrics_exporter_prometheus::PrometheusBuilder;
 
 use crate::counters::LandmarkCounters;
 use crate::station::Station;
-use crate::status::VehicleStatus;
+use crate::status::{FleetStatus, VehicleStatus};
 
 /// Everything in the Prometheus text format.
 pub(crate) fn exposition(
     status: &VehicleStatus,
+    fleet: &FleetStatus,
     stations: &[Arc<Station>],
     landmarks: &LandmarkCounters,
     cameras: &Cameras<Registered>,
@@ -23,6 +24,7 @@ pub(crate) fn exposition(
     let recorder = PrometheusBuilder::new().build_recorder();
     metrics::with_local_recorder(&recorder, || {
         vehicle(status);
+        clocks(fleet);
         stations.iter().for_each(|station| camera(station));
         for (reason, count) in landmarks.by_reason() {
             counter!("waymark_landmark_messages_ignored_total", "reason" => reason).absolute(count);
@@ -54,6 +56,15 @@ fn vehicle(status: &VehicleStatus) {
     counter!("waymark_recorder_lost_messages_total").absolute(status.recorder.lost);
     if let Some(free_bytes) = status.recorder.free_bytes {
         gauge!("waymark_recorder_free_bytes").set(free_bytes as f64);
+    }
+}
+
+fn clocks(fleet: &FleetStatus) {
+    for member in &fleet.members {
+        let Some(clock) = member.clock else { continue };
+        let labels = [("vehicle", member.vehicle.clone()), ("role", member.role.to_owned())];
+        gauge!("waymark_clock_offset_seconds", &labels).set(clock.offset_ms * 1e-3);
+        gauge!("waymark_clock_offset_uncertainty_seconds", &labels).set(clock.uncertainty_ms * 1e-3);
     }
 }
 

@@ -20,6 +20,7 @@ use zenoh::Session;
 
 use crate::config::FollowerConfig;
 use crate::error::FollowerError;
+use crate::fleet_watch::FleetWatch;
 use crate::landmark_feed::LandmarkFeed;
 use crate::landmark_log::LandmarkLog;
 use crate::leader_watch::LeaderWatch;
@@ -81,7 +82,8 @@ pub async fn run_on(
     let file = SetFile::new(state, &config.leader);
     let feed = LandmarkFeed::new(session.clone(), leader.clone(), file)?;
     let posts = man_posts(&config, &own, &session, &journal, &feed.landmarks()).await?;
-    let watch = LeaderWatch::begin(&session, &leader, feed.last_heard()).await?;
+    let (fleet, watching) = FleetWatch::new(session.clone(), own.fleet(), shutdown.clone());
+    let watch = LeaderWatch::begin(&session, &leader, feed.last_heard(), fleet).await?;
     let face = Arc::new(Face::new(&config, identity.instance, &session, &feed, watch, &posts, &journal));
     let beacon = StatusBeacon::declare(&session, &own, Arc::clone(&face)).await?;
     let policy = config.http.policy()?;
@@ -89,6 +91,7 @@ pub async fn run_on(
     let topics = VehicleTopics::new(&own, &leader);
     let mut tasks = JoinSet::new();
     tasks.spawn(LandmarkLog::new(Arc::clone(&journal), topics.clone()).run(feed.landmarks()));
+    tasks.spawn(watching);
     tasks.spawn(beacon.run(topics, shutdown.clone()));
     tasks.spawn(follow_landmarks(feed, shutdown.clone()));
     tasks.spawn(serve(listener, web::routes(Arc::clone(&face)), policy, shutdown.clone()));

@@ -59,6 +59,10 @@ fn states(status: &VehicleStatus) -> BTreeMap<String, (Level, String)> {
             ),
         ),
     ]);
+    if let Some(clock) = &status.leader.clock {
+        let words = if clock.in_step { "in step" } else { "another time than here" };
+        states.insert("leader's clock".to_owned(), (good_if(clock.in_step), words.to_owned()));
+    }
     for camera in &status.cameras {
         let level = good_if(camera.state == "live");
         states.insert(format!("camera {}", camera.id), (level, camera.state.to_owned()));
@@ -82,7 +86,13 @@ mod tests {
             role: "follower",
             version: "1",
             uptime_s: 1.0,
-            leader: LeaderStatus { vehicle: "lead".into(), present: true, age_s: None, missed: None },
+            leader: LeaderStatus {
+                vehicle: "lead".into(),
+                present: true,
+                age_s: None,
+                missed: None,
+                clock: None,
+            },
             router: RouterStatus { connected: true },
             landmarks: 2,
             cameras: Vec::new(),

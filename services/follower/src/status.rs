@@ -1,5 +1,6 @@
 //! `/api/v1/status` as people and programs read it (contract section 8). Missing values are `null`, never 0.
 
+use runtime::clock::ClockOffset;
 use serde::Serialize;
 use vision::outcome::{LandmarkOutcome, Miss};
 use vision::{ColorStats, Outcome};
@@ -38,6 +39,55 @@ pub struct LeaderStatus {
     pub age_s: Option<f64>,
     /// Manifests that it sent and that did not arrive, by the gaps in their sequence.
     pub missed: Option<u64>,
+    /// How far its clock is off, as measured within the last seconds.
+    pub clock: Option<ClockStatus>,
+}
+
+/// How far another machine's clock is off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ClockStatus {
+    /// The other clock minus this machine's, ms.
+    pub offset_ms: f64,
+    /// How far that may be wrong either way, ms.
+    pub uncertainty_ms: f64,
+    /// Whether the clocks agree to within a frame at 30 Hz, as far as that is certain.
+    pub in_step: bool,
+}
+
+impl From<ClockOffset> for ClockStatus {
+    fn from(clock: ClockOffset) -> Self {
+        Self {
+            offset_ms: clock.offset_ns as f64 * 1e-6,
+            uncertainty_ms: clock.uncertainty_ns() as f64 * 1e-6,
+            in_step: clock.is_in_step(),
+        }
+    }
+}
+
+/// Everyone who is announced in the fleet, as `/api/v1/fleet` tells it.
+#[derive(Clone, Debug, Serialize)]
+pub struct FleetStatus {
+    /// By vehicle, role and instance.
+    pub members: Vec<FleetMember>,
+}
+
+/// A process of the fleet.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FleetMember {
+    /// Its vehicle's id.
+    pub vehicle: String,
+    /// What it does for the vehicle.
+    pub role: &'static str,
+    /// Names the process.
+    pub instance: String,
+    /// Whether it answered when asked last; one that is stopped is announced and does not.
+    pub answers: bool,
+    /// Name of its machine.
+    pub host: Option<String>,
+    /// Version of its program.
+    pub version: Option<String>,
+    /// How far its clock is off.
+    pub clock: Option<ClockStatus>,
 }
 
 /// The way to the others.

@@ -64,6 +64,7 @@ impl StatusBeacon {
         self.log_changes(&status, topics, sent_at_ns);
         let mut message = message(&status, version, sent_at_ns);
         message.instance.clone_from(&self.face.instance);
+        message.clocks = self.face.leader.fleet().clocks();
         let message = message.encode_to_vec();
         let data = Bytes::copy_from_slice(&message);
         let sequence = self.outbound.put(message, sent_at_ns).await as u64;

@@ -24,7 +24,7 @@ use crate::metrics;
 use crate::pictures_out;
 use crate::post::Post;
 use crate::station::Station;
-use crate::status::{RecorderStatus, RouterStatus, VehicleStatus};
+use crate::status::{FleetStatus, RecorderStatus, RouterStatus, VehicleStatus};
 
 /// Events kept for a page that was away for a moment.
 const EVENTS_KEPT: usize = 1024;
@@ -53,6 +53,7 @@ pub(crate) fn routes(face: Arc<Face>) -> Router {
         .route("/readyz", get(ready))
         .route("/metrics", get(metrics))
         .route("/api/v1/status", get(status))
+        .route("/api/v1/fleet", get(fleet))
         .route("/api/v1/recorder", get(recorder))
         .route("/api/v1/recorder/{command}", post(command))
         .route("/api/v1/events", get(events))
@@ -161,13 +162,23 @@ async fn ready(State(face): Shared) -> Response {
 
 async fn metrics(State(face): Shared, Extension(refusals): Extension<Arc<Counters>>) -> Response {
     let status = face.status().await;
-    let text =
-        metrics::exposition(&status, &face.stations, &face.landmark_counters, &face.cameras, &refusals);
+    let text = metrics::exposition(
+        &status,
+        &face.leader.fleet().status(),
+        &face.stations,
+        &face.landmark_counters,
+        &face.cameras,
+        &refusals,
+    );
     metrics_text(text)
 }
 
 async fn status(State(face): Shared) -> Json<VehicleStatus> {
     Json(face.status().await)
+}
+
+async fn fleet(State(face): Shared) -> Json<FleetStatus> {
+    Json(face.leader.fleet().status())
 }
 
 async fn recorder(State(face): Shared) -> Json<RecorderStatus> {

@@ -71,6 +71,7 @@ impl LeaderStatus {
             cameras: Vec::new(),
             recorder: None,
             instance: self.instance.clone(),
+            clocks: Vec::new(),
         }
     }
 }

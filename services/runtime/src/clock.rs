@@ -7,6 +7,9 @@
 
 use serde::Serialize;
 
+/// Beyond this, the times of two machines do not tell which of two frames at 30 Hz was first.
+const MAX_OFFSET_NS: u64 = 33_000_000;
+
 /// One exchange of question and answer; all times ns since the Unix epoch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exchange {
@@ -41,6 +44,20 @@ impl Exchange {
     }
 }
 
+impl ClockOffset {
+    /// How far the offset may be wrong, in ns either way.
+    #[must_use]
+    pub fn uncertainty_ns(&self) -> i64 {
+        self.round_trip_ns / 2
+    }
+
+    /// Whether both clocks may agree to within a frame at 30 Hz; only what is certain counts against it.
+    #[must_use]
+    pub fn is_in_step(&self) -> bool {
+        self.offset_ns.unsigned_abs() <= MAX_OFFSET_NS.saturating_add(self.uncertainty_ns().unsigned_abs())
+    }
+}
+
 /// The best of several exchanges with one machine.
 pub fn best_offset(exchanges: impl IntoIterator<Item = Exchange>) -> Option<ClockOffset> {
     let offsets = exchanges.into_iter().filter_map(|exchange| exchange.offset());
@@ -65,6 +82,15 @@ mod tests {
     fn a_clock_that_was_set_back_says_nothing() {
         let set_back = Exchange { asked_at_ns: 100, received_at_ns: 5, answered_at_ns: 6, heard_at_ns: 50 };
         assert_eq!(best_offset([set_back]), None);
+    }
+
+    #[test]
+    fn only_what_is_certain_counts_against_a_clock() {
+        let in_step = |offset_ns, round_trip_ns| ClockOffset { offset_ns, round_trip_ns }.is_in_step();
+        assert!(in_step(-30_000_000, 2_000_000));
+        assert!(in_step(40_000_000, 20_000_000));
+        assert!(!in_step(40_000_000, 2_000_000));
+        assert!(!in_step(i64::MIN, 0));
     }
 
     proptest! {

@@ -69,7 +69,8 @@ export function makeWorld(state) {
       set: { epoch: 3, version: 7 }, edits: { made: 4, refused: 0 }, cameras: [],
     } : ({
       vehicle: "follower-1", role: "follower", version: "0.1.0", uptime_s: 4021 + (Date.now() - startedAt) / 1000,
-      leader: { vehicle: "lead", present: state !== "leader-gone", age_s: state === "leader-gone" ? 48 : 0.4 },
+      leader: { vehicle: "lead", present: state !== "leader-gone", age_s: state === "leader-gone" ? 48 : 0.4,
+        clock: state === "leader-gone" ? null : { offset_ms: state === "one-lost" ? -3210 : 0.4, uncertainty_ms: 0.2, in_step: state !== "one-lost" } },
       router: { connected: true },
       landmarks: set.length,
       cameras: state === "no-camera" ? [] : [{
