@@ -6,8 +6,10 @@
 
 mod candidate;
 pub(crate) mod choose;
+mod coarse;
 mod disc;
 mod face;
+pub(crate) mod like;
 pub(crate) mod likeness;
 pub(crate) mod noise;
 pub(crate) mod palette;
@@ -16,6 +18,7 @@ mod segment;
 mod soft_edge;
 mod tracing;
 
-pub(crate) use candidate::{Candidate, Search, candidates};
+pub(crate) use candidate::{Candidate, Finder, Search};
+pub(crate) use coarse::Coarse;
 pub(crate) use likeness::Likeness;
 pub(crate) use tracing::Tracer;

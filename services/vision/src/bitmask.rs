@@ -149,6 +149,11 @@ impl BitMask {
         &self.words[y as usize * self.words_per_row..][..self.words_per_row]
     }
 
+    /// Whether a row is known to hold no set pixel.
+    pub(crate) fn is_empty_row(&self, y: u32) -> bool {
+        self.touched_words(y).1.is_empty()
+    }
+
     /// Number of set pixels.
     #[must_use]
     pub fn count(&self) -> u64 {

@@ -4,6 +4,7 @@
 //! taken between two frames continues exactly where it was taken.
 
 mod budget;
+mod conclude;
 mod faithful;
 mod pursue;
 mod reason;
@@ -15,7 +16,7 @@ pub use state::{FollowState, LandmarkState, Track};
 use std::fmt;
 use std::sync::Arc;
 
-use crate::adaptive::{Likeness, Search, Tracer, noise};
+use crate::adaptive::{Finder, Likeness, Search, Tracer, noise};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
 use crate::landmark::{Landmark, LandmarkSet};
@@ -114,12 +115,19 @@ pub struct Follow {
     state: FollowState,
     /// Memory only: no outcome depends on what earlier frames left in it.
     workspace: Workspace,
+    tools: Tools,
+}
+
+/// What finds and traces objects in `adaptive` mode, with its memory.
+#[derive(Default)]
+struct Tools {
+    finder: Finder,
     tracer: Tracer,
 }
 
 impl fmt::Debug for Follow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { options, set, state, workspace: _, tracer: _ } = self;
+        let Self { options, set, state, workspace: _, tools: _ } = self;
         f.debug_struct("Follow")
             .field("options", options)
             .field("set", set)
@@ -143,7 +151,7 @@ impl Follow {
             set: LandmarkSet::default(),
             state,
             workspace: Workspace::default(),
-            tracer: Tracer::default(),
+            tools: Tools::default(),
         };
         follow.set_landmarks(set);
         follow
@@ -233,7 +241,7 @@ impl Follow {
         let (landmark, state) = (&self.set.landmarks[at], &mut self.state.landmarks[at]);
         match scene.options.mode {
             Mode::Faithful => faithful::landmark(scene, landmark, state, budget, &mut self.workspace, probe),
-            Mode::Adaptive => pursue::landmark(scene, landmark, state, budget, &mut self.tracer, probe),
+            Mode::Adaptive => pursue::landmark(scene, landmark, state, budget, &mut self.tools, probe),
         }
     }
 }

@@ -17,8 +17,12 @@ const WALL: [i32; 3] = [58, 52, 50];
 
 /// Floors of three surfaces, a dark wall above them, and three blocks of a thirteenth of the frame's height.
 pub(crate) fn rink(size: SizePx) -> Frame {
+    rink_of_blocks(size, size.height / 13)
+}
+
+/// The same with blocks `side` pixels wide.
+pub(crate) fn rink_of_blocks(size: SizePx, side: u32) -> Frame {
     let mut noise = Noise(0x9E37_79B9_7F4A_7C15);
-    let side = size.height / 13;
     let mut rgb = Vec::with_capacity(3 * (size.width * size.height) as usize);
     for (y, x) in (0..size.height).flat_map(|y| (0..size.width).map(move |x| (y, x))) {
         let block = |colour, left: u32, top: u32| {

@@ -3,6 +3,7 @@
 use super::choose::{self, Form};
 use super::disc;
 use super::face::LETTERING_BRIGHTNESS;
+use super::like::Marker;
 use super::likeness::Likeness;
 use super::patch::Patch;
 use super::segment::{self, Parts};
@@ -68,65 +69,60 @@ impl Candidate {
     }
 }
 
-/// The objects in the searched region that look like the landmark, best first.
-pub(crate) fn candidates(search: &Search<'_>) -> Vec<Candidate> {
-    let mut found = match search.likeness.face() {
-        None => from_seeds(search),
-        Some(_) => PALEST
-            .iter()
-            .flat_map(|&palest| {
-                let likeness = search.likeness.with_palest(palest);
-                from_seeds(&Search { likeness: &likeness, ..*search })
-            })
-            .collect(),
-    };
-    found.sort_by(|a, b| b.score.total_cmp(&a.score));
-    without_overlaps(found)
+/// Finds candidates, with the memory to do so again and again.
+#[derive(Debug, Default)]
+pub(crate) struct Finder {
+    marker: Marker,
+    like: BitMask,
+    /// What of `like` stays when paler tints do not count.
+    deep: BitMask,
+    components: Components,
 }
 
-fn from_seeds(search: &Search<'_>) -> Vec<Candidate> {
-    let mask = like_pixels(search);
-    let mut components = Components::default();
-    components.find(&mask);
+impl Finder {
+    /// The objects in the searched region that look like the landmark, best first.
+    pub(crate) fn candidates(&mut self, search: &Search<'_>) -> Vec<Candidate> {
+        let Self { marker, like, deep, components } = self;
+        let mut found = Vec::new();
+        if search.likeness.face().is_none() {
+            marker.mark(search.frame, search.region, search.likeness, like);
+            components.find(like);
+            from_seeds(search, components, &mut found);
+        } else {
+            let palest = search.likeness.with_palest(PALEST[0]);
+            marker.mark(search.frame, search.region, &palest, like);
+            for palest in PALEST {
+                let likeness = search.likeness.with_palest(palest);
+                marker.refine(search.frame, search.region, &likeness, like, deep);
+                components.find(deep);
+                from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
+            }
+        }
+        found.sort_by(|a, b| b.score.total_cmp(&a.score));
+        without_overlaps(found)
+    }
+}
+
+fn from_seeds(search: &Search<'_>, components: &Components, all: &mut Vec<Candidate>) {
     let mut seeds: Vec<&Component> = components.list().iter().filter(|c| c.pixels >= LEAST_SEED_PX).collect();
     seeds.sort_by_key(|component| std::cmp::Reverse(component.pixels));
-    let mut found: Vec<Candidate> = Vec::new();
+    let known = all.len();
     for seed in seeds.iter().take(search.limit) {
         let (x, y) = seed.mean_pixel();
         let centre = PointPx::new(
             (f64::from(search.region.x) + x + 0.5) as f32,
             (f64::from(search.region.y) + y + 0.5) as f32,
         );
-        if !found.iter().any(|known| known.covers(centre)) {
-            let alone = seed_patch(search, &components, seed, &[]);
-            found.extend(candidate(search, &alone));
-            found.extend(round_candidate(search, &alone));
+        if !all[known..].iter().any(|known| known.covers(centre)) {
+            let alone = seed_patch(search, components, seed, &[]);
+            all.extend(candidate(search, &alone));
+            all.extend(round_candidate(search, &alone));
             let parts = parts_of_sign(search, seed, &seeds);
             if !parts.is_empty() {
-                found.extend(candidate(search, &seed_patch(search, &components, seed, &parts)));
+                all.extend(candidate(search, &seed_patch(search, components, seed, &parts)));
             }
         }
     }
-    found
-}
-
-/// The pixels of the region that may be the landmark's.
-fn like_pixels(search: &Search<'_>) -> BitMask {
-    let region = search.region;
-    let mut mask = BitMask::new(region.width, region.height);
-    for v in 0..region.height {
-        let row = &search.frame.row(region.y + v)[3 * region.x as usize..][..3 * region.width as usize];
-        for (word, pixels) in row.chunks(3 * 64).enumerate() {
-            let mut bits = 0;
-            for (at, pixel) in pixels.chunks_exact(3).enumerate() {
-                bits |= u64::from(search.likeness.matches([pixel[0], pixel[1], pixel[2]])) << at;
-            }
-            if bits != 0 {
-                mask.or_word(v, word as u32, bits);
-            }
-        }
-    }
-    mask
 }
 
 /// The parts of a sign that lettering separates from `seed`, its largest one.

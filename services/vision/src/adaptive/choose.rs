@@ -80,8 +80,10 @@ pub(crate) fn best_window(search: &Search<'_>, object: &Patch, area_px2: f32) ->
     let side = ((0.42 * area_px2.sqrt()) as i32).clamp(1, LARGEST_WINDOW_2X / 2);
     let step = (side / 2).max(1);
     let mut best: Option<(f32, ColorStats)> = None;
-    for y in (0..object.height()).step_by(step as usize) {
-        for x in (0..object.width()).step_by(step as usize) {
+    let bounds = object.bounds()?;
+    let (left, top) = ((bounds.x - object.rect.x) as i32, (bounds.y - object.rect.y) as i32);
+    for y in (top..top + bounds.height as i32).step_by(step as usize) {
+        for x in (left..left + bounds.width as i32).step_by(step as usize) {
             let corners = [(0, 0), (side - 1, 0), (0, side - 1), (side - 1, side - 1)];
             if !corners.iter().all(|(u, v)| object.get(x + u, y + v)) {
                 continue;
@@ -174,9 +176,9 @@ fn variance_excess(search: &Search<'_>, observed: &ColorStats) -> f32 {
 /// The part of a ring around the object that does not look like the landmark: low inside something larger.
 fn isolation(search: &Search<'_>, object: &Patch) -> f32 {
     let inner = object.dilated(2);
-    let outer = inner.dilated(2);
+    let ring = inner.dilated(2).without(&inner);
     let (mut like, mut all) = (0.0_f32, 0.0_f32);
-    for (x, y) in outer.set_places().filter(|&(x, y)| !inner.get(x, y)) {
+    for (x, y) in ring.set_places() {
         let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
         like += if search.likeness.matches(pixel) { 1.0 } else { 0.0 };
         all += 1.0;

@@ -37,6 +37,9 @@ struct Contrast {
     light_middle: f32,
 }
 
+/// What the factors of [`Contrast::merit`] but the tint and the size come to at most.
+const MOST_MERIT: f32 = 1.0;
+
 impl Contrast {
     fn merit(&self, disc: Disc) -> f32 {
         let on_all_sides = 0.5 + 0.5 * self.weakest.max(0.0);
@@ -58,27 +61,54 @@ pub(crate) struct Found {
 pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> Option<Found> {
     let tints = Tints::of(frame, rect, face);
     let (left, top) = ((bounds.x - rect.x) as f32, (bounds.y - rect.y) as f32);
-    let mut best: Option<(f32, Disc, Contrast)> = None;
+    let mut best = Best::default();
+    let largest = RADII_PX.1.min(0.75 * bounds.width.max(bounds.height) as f32 + 1.0);
+    // Every other radius at every whole pixel, then all around the best of those.
     let mut radius = RADII_PX.0;
-    while radius <= RADII_PX.1.min(0.75 * bounds.width.max(bounds.height) as f32 + 1.0) {
-        for v in 0..=2 * bounds.height {
-            for u in 0..=2 * bounds.width {
-                let disc = Disc { x: left + 0.5 * u as f32, y: top + 0.5 * v as f32, radius };
-                let contrast = tints.contrast(disc);
-                let merit = contrast.merit(disc);
-                if best.as_ref().is_none_or(|(most, ..)| merit > *most) {
-                    best = Some((merit, disc, contrast));
-                }
+    while radius <= largest {
+        for v in 0..=bounds.height {
+            for u in 0..=bounds.width {
+                best.try_disc(&tints, Disc { x: left + u as f32, y: top + v as f32, radius });
             }
         }
-        radius *= RADIUS_STEP;
+        radius *= RADIUS_STEP * RADIUS_STEP;
     }
-    let (_, disc, contrast) = best?;
+    let (coarse, _) = best.found?;
+    for scale in [1.0 / RADIUS_STEP, 1.0, RADIUS_STEP] {
+        for v in -1..=1 {
+            for u in -1..=1 {
+                let (x, y) = (coarse.x + 0.5 * u as f32, coarse.y + 0.5 * v as f32);
+                best.try_disc(&tints, Disc { x, y, radius: coarse.radius * scale });
+            }
+        }
+    }
+    let (disc, contrast) = best.found?;
     (contrast.overall > 0.15).then(|| Found {
         mask: disc.patch(rect),
         clear: contrast.weakest.clamp(0.0, 1.0),
         lettering: contrast.light_middle - EDGE_ALONE,
     })
+}
+
+/// The disc that stands out most of those tried.
+#[derive(Default)]
+struct Best {
+    merit: f32,
+    found: Option<(Disc, Contrast)>,
+}
+
+impl Best {
+    fn try_disc(&mut self, tints: &Tints, disc: Disc) {
+        // Nothing around it can make a disc stand out more than its own tint.
+        if self.found.is_some() && MOST_MERIT * tints.inside(disc) * disc.radius.powf(0.6) <= self.merit {
+            return;
+        }
+        let contrast = tints.contrast(disc);
+        let merit = contrast.merit(disc);
+        if self.found.is_none() || merit > self.merit {
+            (self.merit, self.found) = (merit, Some((disc, contrast)));
+        }
+    }
 }
 
 impl Disc {
@@ -95,6 +125,8 @@ struct Tints {
     height: i32,
     /// Tint and brightness of each pixel.
     values: Vec<(f32, f32)>,
+    /// For each row the sums of the tints left of each column.
+    sums: Vec<f32>,
     /// How much lighter than the sign's colour lettering is, levels.
     lighter: f32,
 }
@@ -106,8 +138,36 @@ impl Tints {
             let color = frame.pixel(x, y).map(f32::from);
             (face.tint_of(color), (color[0] + color[1] + color[2]) / 3.0)
         };
-        let values = rows.flat_map(|y| (rect.x..rect.x + rect.width).map(move |x| tint(x, y))).collect();
-        Self { width: rect.width as i32, height: rect.height as i32, values, lighter: face.lighter() }
+        let values: Vec<(f32, f32)> =
+            rows.flat_map(|y| (rect.x..rect.x + rect.width).map(move |x| tint(x, y))).collect();
+        let mut sums = Vec::with_capacity(values.len() + rect.height as usize);
+        for row in values.chunks_exact(rect.width as usize) {
+            sums.push(0.0);
+            sums.extend(row.iter().scan(0.0, |sum, (tint, _)| {
+                *sum += tint;
+                Some(*sum)
+            }));
+        }
+        Self { width: rect.width as i32, height: rect.height as i32, values, sums, lighter: face.lighter() }
+    }
+
+    /// Mean tint of the pixels whose centres lie in a disc.
+    fn inside(&self, disc: Disc) -> f32 {
+        let (mut sum, mut n) = (0.0, 0);
+        let rows = (disc.y - disc.radius) as i32..(disc.y + disc.radius) as i32 + 1;
+        for y in rows.start.max(0)..rows.end.min(self.height) {
+            let half2 = disc.radius * disc.radius - (y as f32 + 0.5 - disc.y).powi(2);
+            if half2 < 0.0 {
+                continue;
+            }
+            let half = half2.sqrt();
+            let start = ((disc.x - half - 0.5).ceil() as i32).clamp(0, self.width);
+            let end = ((disc.x + half - 0.5).floor() as i32 + 1).clamp(start, self.width);
+            let row = &self.sums[(y * (self.width + 1)) as usize..];
+            sum += row[end as usize] - row[start as usize];
+            n += end - start;
+        }
+        sum / n.max(1) as f32
     }
 
     fn contrast(&self, disc: Disc) -> Contrast {

@@ -22,6 +22,9 @@ const MIDDLE_RADIUS: f32 = 0.45;
 /// Brightness of lettering over the brightest channel of the sign's colour.
 pub(crate) const LETTERING_BRIGHTNESS: f32 = 1.3;
 
+/// The pairs of channels whose differences are bounded.
+pub(crate) const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
+
 /// What is known of a sign's face.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Face {
@@ -81,12 +84,25 @@ impl Face {
     }
 
     /// Whether a colour shows the tint, pale or deep.
+    #[inline(always)]
     pub(crate) fn has_tint(&self, color: [f32; 3]) -> bool {
         let away = away_from_grey(color);
         let along = dot(away, self.tint);
         let aside2 = dot(away, away) - along * along;
         let purity = along / self.purity;
-        (self.palest..DEEPEST).contains(&purity) && aside2 <= (TINT_SPREAD * along + TINT_NOISE).powi(2)
+        let spread = TINT_SPREAD * along + TINT_NOISE;
+        (purity >= self.palest) & (purity < DEEPEST) & (aside2 <= spread * spread)
+    }
+
+    /// By how much the first channel exceeds the second, at least, in every colour that shows the tint: for R−G, R−B,
+    /// G−R, G−B, B−R and B−G, levels.
+    pub(crate) fn least_differences(&self) -> [f32; 6] {
+        PAIRS.map(|(a, b)| {
+            // What points aside by d moves a difference of two channels by √2 d at most.
+            let slope = self.tint[a] - self.tint[b] - std::f32::consts::SQRT_2 * TINT_SPREAD;
+            let along = self.purity * if slope > 0.0 { self.palest } else { DEEPEST };
+            along * slope - std::f32::consts::SQRT_2 * TINT_NOISE
+        })
     }
 
     /// How much of the tint a colour shows, 1 for the pure colour.
@@ -146,15 +162,18 @@ pub(crate) fn far_view(landmark: &Landmark) -> Option<usize> {
     several.then(|| landmark.shades.iter().rposition(busy)).flatten()
 }
 
+#[inline(always)]
 fn brightness(color: [f32; 3]) -> f32 {
     (color[0] + color[1] + color[2]) / 3.0
 }
 
+#[inline(always)]
 fn away_from_grey(color: [f32; 3]) -> [f32; 3] {
     let grey = brightness(color);
     color.map(|level| level - grey)
 }
 
+#[inline(always)]
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -1,5 +1,6 @@
 //! Which colours may be the landmark's under the light of the moment.
 
+use super::coarse::Coarse;
 use super::face::{self, Face};
 use crate::landmark::{ColorStats, Landmark};
 
@@ -84,14 +85,42 @@ impl Likeness {
     /// Whether a pixel may be the landmark's.
     pub(crate) fn matches(&self, pixel: [u8; 3]) -> bool {
         let color = pixel.map(f32::from);
-        self.face.is_some_and(|face| face.has_tint(color)) || self.matches_shade(color)
+        self.face.is_some_and(|face| face.has_tint(color)) || self.cones.iter().any(|cone| cone.holds(color))
     }
 
-    fn matches_shade(&self, color: [f32; 3]) -> bool {
-        self.cones.iter().any(|cone| {
-            let gain = cone.gain_of(color);
-            (0..3).all(|c| (color[c] - gain * cone.shade[c]).abs() <= cone.tolerance[c])
-        })
+    /// For each of up to 64 pixels whether it may be the landmark's, the first in bit 0. The same as
+    /// [`matches`](Self::matches), written so that compilers take many pixels at a time.
+    #[inline(always)]
+    pub(crate) fn matching(&self, rgb: &[u8]) -> u64 {
+        let mut levels = [[0.0_f32; 64]; 3];
+        for (at, pixel) in rgb.as_chunks::<3>().0.iter().enumerate().take(64) {
+            for c in 0..3 {
+                levels[c][at] = f32::from(pixel[c]);
+            }
+        }
+        let mut found = [0_u8; 64];
+        let color = |at: usize| [levels[0][at], levels[1][at], levels[2][at]];
+        for cone in &self.cones {
+            for (at, found) in found.iter_mut().enumerate() {
+                *found |= u8::from(cone.holds(color(at)));
+            }
+        }
+        if let Some(face) = &self.face {
+            for (at, found) in found.iter_mut().enumerate() {
+                *found |= u8::from(face.has_tint(color(at)));
+            }
+        }
+        let bits = found.as_chunks::<8>().0.iter().enumerate().fold(0, |bits, (at, flags)| {
+            // Gathers the lowest bit of each of eight bytes into one byte.
+            let gathered = u64::from_le_bytes(*flags).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+            bits | gathered << (8 * at)
+        });
+        if rgb.len() >= 192 { bits } else { bits & ((1 << (rgb.len() / 3)) - 1) }
+    }
+
+    /// What tells at a glance that no pixel of a run matches.
+    pub(crate) fn coarse(&self) -> Coarse {
+        Coarse::new(self.cones.iter().map(Cone::bounds), self.face.as_ref().map(Face::least_differences))
     }
 
     /// The face of a lettered sign; `None` of other landmarks.
@@ -117,8 +146,25 @@ impl Cone {
         Match { gain, excess: off(0).max(off(1)).max(off(2)) }
     }
 
+    /// Whether a colour lies in the cone.
+    #[inline(always)]
+    fn holds(&self, color: [f32; 3]) -> bool {
+        let gain = self.gain_of(color);
+        let off = |c: usize| (color[c] - gain * self.shade[c]).abs();
+        (off(0) <= self.tolerance[0]) & (off(1) <= self.tolerance[1]) & (off(2) <= self.tolerance[2])
+    }
+
+    /// The least and the greatest level of each channel within the cone.
+    fn bounds(&self) -> [(f32, f32); 3] {
+        let (low, high) = self.gain;
+        std::array::from_fn(|c| {
+            (low * self.shade[c] - self.tolerance[c], high * self.shade[c] + self.tolerance[c])
+        })
+    }
+
+    #[inline(always)]
     fn gain_of(&self, color: [f32; 3]) -> f32 {
-        let gain = (0..3).map(|c| color[c] * self.onto_shade[c]).sum::<f32>();
-        gain.clamp(self.gain.0, self.gain.1)
+        let [r, g, b] = self.onto_shade;
+        (color[0] * r + color[1] * g + color[2] * b).max(self.gain.0).min(self.gain.1)
     }
 }

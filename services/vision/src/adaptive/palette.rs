@@ -45,22 +45,28 @@ pub(crate) fn levels(pixel: [u8; 3]) -> [f32; 3] {
 }
 
 fn filled_bins(pixels: impl Iterator<Item = [u8; 3]>) -> Vec<Cluster> {
-    let mut sums = vec![[0_u32; 4]; BINS * BINS * BINS];
+    // For each bin the place of its sums plus one; most bins stay empty.
+    let mut place = [0_u16; BINS * BINS * BINS];
+    let mut sums: Vec<(usize, [u32; 4])> = Vec::with_capacity(128);
     for [r, g, b] in pixels {
         let bin = [r, g, b].iter().fold(0, |at, &level| at * BINS + usize::from(level >> 4));
-        let sum = &mut sums[bin];
+        if place[bin] == 0 {
+            sums.push((bin, [0; 4]));
+            place[bin] = sums.len() as u16;
+        }
+        let (_, sum) = &mut sums[usize::from(place[bin]) - 1];
         sum[0] += u32::from(r);
         sum[1] += u32::from(g);
         sum[2] += u32::from(b);
         sum[3] += 1;
     }
-    let mut bins: Vec<Cluster> = sums
-        .into_iter()
-        .filter(|sum| sum[3] > 0)
-        .map(|[r, g, b, n]| Cluster { mean: [r, g, b].map(|s| s as f32 / n as f32), pixels: n })
-        .collect();
-    bins.sort_by_key(|bin| std::cmp::Reverse(bin.pixels));
-    bins
+    // Fullest first; of equally full ones the darker.
+    sums.sort_unstable_by_key(|&(bin, sum)| (std::cmp::Reverse(sum[3]), bin));
+    let cluster = |(_, [r, g, b, n]): (usize, [u32; 4])| Cluster {
+        mean: [r, g, b].map(|s| s as f32 / n as f32),
+        pixels: n,
+    };
+    sums.into_iter().map(cluster).collect()
 }
 
 fn leaders(bins: &[Cluster], radius: f32, limit: usize) -> Vec<Cluster> {

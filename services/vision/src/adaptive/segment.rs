@@ -5,7 +5,7 @@
 //! be lighter or darker along its own shading line.
 
 use super::likeness::Likeness;
-use super::palette::{Cluster, distance2, levels, nearest, palette};
+use super::palette::{Cluster, levels, palette};
 use super::patch::Patch;
 use crate::frame::Frame;
 use crate::geometry::RectPx;
@@ -16,6 +16,8 @@ const SHADING: (f32, f32) = (0.82, 1.18);
 const RADIUS: f32 = 16.0;
 const OBJECT_COLOURS: usize = 6;
 const BACKGROUND_COLOURS: usize = 16;
+/// Palettes are told from about this many pixels.
+const PALETTE_SAMPLES: usize = 700;
 /// Whiskers are cut off objects of at least this many pixels across.
 const OPENING_SIZE_PX: f32 = 11.0;
 
@@ -32,16 +34,13 @@ pub(crate) enum Parts {
 pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Parts) -> Option<Patch> {
     let size_px = (seed.count() as f32).sqrt();
     let reach = (0.3 * size_px).ceil().max(2.0) as i32;
-    let own = object_colours(frame, seed);
     let near = seed.dilated(reach);
-    let others = background_colours(frame, seed, &near, likeness);
-    let pixel = |x: i32, y: i32| levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32));
-    let is_object = |x: i32, y: i32| {
-        let color = pixel(x, y);
-        let from_background = nearest(&others, color).map_or(f32::MAX, |(_, d2)| d2);
-        near.get(x, y) && own.iter().any(|own| shading_distance2(own.mean, color) < from_background)
-    };
-    let mut object = Patch::from_fn(seed.rect, is_object);
+    let own = Shaded::new(&object_colours(frame, seed));
+    let others = Plain::new(&background_colours(frame, seed, &near, likeness));
+    let mut object = near.only(|x, y| {
+        let color = levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32));
+        own.distance2(color) < others.distance2(color)
+    });
     if size_px >= OPENING_SIZE_PX {
         object = object.opened(1);
     }
@@ -64,27 +63,97 @@ pub(crate) fn surroundings(bounds: RectPx, frame: &Frame) -> RectPx {
 fn object_colours(frame: &Frame, seed: &Patch) -> Vec<Cluster> {
     let core = seed.eroded(1);
     let core = if 3 * core.count() >= seed.count() { &core } else { seed };
-    let pixels = core.set_places().map(|(x, y)| frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32));
-    let mut colours = palette(pixels, RADIUS, OBJECT_COLOURS);
-    let least = core.count() as u32 / 25;
-    colours.retain(|cluster| cluster.pixels >= least);
+    let mut colours = palette(sampled(frame, core), RADIUS, OBJECT_COLOURS);
+    let all: u32 = colours.iter().map(|cluster| cluster.pixels).sum();
+    colours.retain(|cluster| 25 * cluster.pixels >= all);
     colours
 }
 
 /// Colours around the seed that are not the landmark's own.
 fn background_colours(frame: &Frame, seed: &Patch, near: &Patch, likeness: &Likeness) -> Vec<Cluster> {
-    let close = seed.dilated(2);
-    let pixels = near
-        .places()
-        .filter(|&(x, y)| !close.get(x, y))
-        .map(|(x, y)| frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32))
-        .filter(|&pixel| !likeness.matches(pixel));
-    palette(pixels, RADIUS, BACKGROUND_COLOURS)
+    let ring = near.without(&seed.dilated(2));
+    palette(sampled(frame, &ring).filter(|&pixel| !likeness.matches(pixel)), RADIUS, BACKGROUND_COLOURS)
 }
 
-/// Squared distance of `color` from `own` with the light that suits it best, levels².
-fn shading_distance2(own: [f32; 3], color: [f32; 3]) -> f32 {
-    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let gain = (dot(own, color) / dot(own, own).max(1.0)).clamp(SHADING.0, SHADING.1);
-    distance2(own.map(|level| level * gain), color)
+/// Pixels of a patch, evenly thinned out where there are many.
+fn sampled<'a>(frame: &'a Frame, patch: &'a Patch) -> impl Iterator<Item = [u8; 3]> + 'a {
+    let step = (patch.count() / PALETTE_SAMPLES).max(1);
+    // An odd step does not fall into line with the rows of even patches.
+    let places = patch.set_places().step_by(step | 1);
+    places.map(|(x, y)| frame.pixel(patch.rect.x + x as u32, patch.rect.y + y as u32))
+}
+
+/// A palette whose distances are taken all at once; empty places are far from every colour.
+struct Plain {
+    means: [[f32; BACKGROUND_COLOURS]; 3],
+}
+
+const FAR: f32 = 1e6;
+
+impl Plain {
+    fn new(colours: &[Cluster]) -> Self {
+        let mut means = [[FAR; BACKGROUND_COLOURS]; 3];
+        for (at, cluster) in colours.iter().enumerate().take(BACKGROUND_COLOURS) {
+            for c in 0..3 {
+                means[c][at] = cluster.mean[c];
+            }
+        }
+        Self { means }
+    }
+
+    /// Squared distance from the nearest colour, levels².
+    fn distance2(&self, color: [f32; 3]) -> f32 {
+        let [r, g, b] = &self.means;
+        let mut distances = [0.0_f32; BACKGROUND_COLOURS];
+        for at in 0..BACKGROUND_COLOURS {
+            let (dr, dg, db) = (r[at] - color[0], g[at] - color[1], b[at] - color[2]);
+            distances[at] = dr * dr + dg * dg + db * db;
+        }
+        least(distances)
+    }
+}
+
+/// A palette of the object's colours, each with more or less light on it.
+struct Shaded {
+    means: [[f32; 8]; 3],
+    /// One over the squared length of each mean.
+    inverse: [f32; 8],
+}
+
+impl Shaded {
+    fn new(colours: &[Cluster]) -> Self {
+        let mut this = Self { means: [[FAR; 8]; 3], inverse: [0.0; 8] };
+        for (at, cluster) in colours.iter().enumerate().take(8) {
+            for c in 0..3 {
+                this.means[c][at] = cluster.mean[c];
+            }
+            this.inverse[at] = 1.0 / cluster.mean.iter().map(|m| m * m).sum::<f32>().max(1.0);
+        }
+        this
+    }
+
+    /// Squared distance from the nearest colour with the light that suits it best, levels².
+    fn distance2(&self, color: [f32; 3]) -> f32 {
+        let [r, g, b] = &self.means;
+        let mut distances = [0.0_f32; 8];
+        for at in 0..8 {
+            let along = r[at] * color[0] + g[at] * color[1] + b[at] * color[2];
+            let gain = (along * self.inverse[at]).max(SHADING.0).min(SHADING.1);
+            let (dr, dg, db) = (gain * r[at] - color[0], gain * g[at] - color[1], gain * b[at] - color[2]);
+            distances[at] = dr * dr + dg * dg + db * db;
+        }
+        least(distances)
+    }
+}
+
+/// The least of several numbers, by halves.
+fn least<const N: usize>(mut values: [f32; N]) -> f32 {
+    let mut half = N / 2;
+    while half > 0 {
+        for at in 0..half {
+            values[at] = values[at].min(values[at + half]);
+        }
+        half /= 2;
+    }
+    values[0]
 }

@@ -3,7 +3,7 @@
 //! That part is told from the pixel's colour, between the object's colour next to it and the background's next to it.
 
 use super::palette::levels;
-use super::patch::Patch;
+use super::patch::{Patch, set_bits};
 use crate::frame::Frame;
 use crate::geometry::PointPx;
 
@@ -38,14 +38,19 @@ pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch, edge: Edge) -> Op
         Edge::Bordered { width_px, .. } => width_px,
     };
     let outer = object.dilated(width_px);
-    let pure = Pure { frame, object, inside: &inside, beyond: &outer.dilated(1) };
+    let background = outer.dilated(1).inverted();
+    let pure = Pure { frame, object, inside: &inside, background: &background };
     let (mut weight, mut mx, mut my) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for (x, y) in outer.set_places() {
-        let share = if inner.get(x, y) { 1.0 } else { pure.covered_share((x, y), edge) };
-        weight += f64::from(share);
-        mx += f64::from(share) * (f64::from(x) + 0.5);
-        my += f64::from(share) * (f64::from(y) + 0.5);
-    }
+    let mut add = |x: i32, y: i32, share: f64| {
+        weight += share;
+        mx += share * (f64::from(x) + 0.5);
+        my += share * (f64::from(y) + 0.5);
+    };
+    inner.set_places().for_each(|(x, y)| add(x, y, 1.0));
+    outer
+        .without(&inner)
+        .set_places()
+        .for_each(|(x, y)| add(x, y, f64::from(pure.covered_share((x, y), edge))));
     let (x, y) = (f64::from(object.rect.x) + mx / weight, f64::from(object.rect.y) + my / weight);
     (weight > 0.0).then(|| (PointPx::new(x as f32, y as f32), weight as f32))
 }
@@ -55,15 +60,15 @@ struct Pure<'a> {
     frame: &'a Frame,
     object: &'a Patch,
     inside: &'a Patch,
-    beyond: &'a Patch,
+    background: &'a Patch,
 }
 
 impl Pure<'_> {
     /// The part of an edge pixel that shows the object, 0..1.
     fn covered_share(&self, (x, y): (i32, i32), edge: Edge) -> f32 {
         let hard = if self.object.get(x, y) { 1.0 } else { 0.0 };
-        let own = local_mean(self.frame, self.object, (x, y), |u, v| self.inside.get(u, v));
-        let other = local_mean(self.frame, self.object, (x, y), |u, v| !self.beyond.get(u, v));
+        let own = local_mean(self.frame, self.inside, (x, y));
+        let other = local_mean(self.frame, self.background, (x, y));
         let (Some(own), Some(other)) = (own, other) else { return hard };
         let rect = self.object.rect;
         let color = levels(self.frame.pixel(rect.x + x as u32, rect.y + y as u32));
@@ -104,25 +109,36 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Mean colour of the pixels around a place for which `pure` holds.
-fn local_mean(
-    frame: &Frame,
-    patch: &Patch,
-    (x, y): (i32, i32),
-    pure: impl Fn(i32, i32) -> bool,
-) -> Option<[f32; 3]> {
+/// What a neighbour at a distance of (dx, dy) weighs: near ones tell more of the light on the edge than far ones.
+const NEARNESS: [[f32; SPAN]; SPAN] = {
+    let mut nearness = [[0.0; SPAN]; SPAN];
+    let mut at = 0;
+    while at < SPAN * SPAN {
+        let (dx, dy) = ((at % SPAN) as i32 - REACH, (at / SPAN) as i32 - REACH);
+        nearness[at / SPAN][at % SPAN] = 1.0 / (1 + dx * dx + dy * dy) as f32;
+        at += 1;
+    }
+    nearness
+};
+const SPAN: usize = 2 * REACH as usize + 1;
+
+/// Mean colour of the pixels of `pure` around a place.
+fn local_mean(frame: &Frame, pure: &Patch, (x, y): (i32, i32)) -> Option<[f32; 3]> {
     let (mut sum, mut n) = ([0.0_f32; 3], 0.0_f32);
-    for v in (y - REACH).max(0)..(y + REACH + 1).min(patch.height()) {
-        for u in (x - REACH).max(0)..(x + REACH + 1).min(patch.width()) {
-            if pure(u, v) {
-                // Near neighbours tell more of the light on the edge than far ones.
-                let nearness = 1.0 / (1 + (u - x).pow(2) + (v - y).pow(2)) as f32;
-                let color = levels(frame.pixel(patch.rect.x + u as u32, patch.rect.y + v as u32));
-                for c in 0..3 {
-                    sum[c] += nearness * color[c];
-                }
-                n += nearness;
+    for (row, v) in (y - REACH..=y + REACH).enumerate() {
+        let bits = pure.bits_from(x - REACH, v) & ((1 << SPAN) - 1);
+        if bits == 0 {
+            continue;
+        }
+        let pixels = frame.row(pure.rect.y + v as u32);
+        let left = pure.rect.x as i32 + x - REACH;
+        for column in set_bits(bits) {
+            let nearness = NEARNESS[row][column as usize];
+            let at = 3 * (left + column) as usize;
+            for c in 0..3 {
+                sum[c] += nearness * f32::from(pixels[at + c]);
             }
+            n += nearness;
         }
     }
     (n > 0.0).then(|| sum.map(|s| s / n))

@@ -34,10 +34,10 @@ impl Tracer {
     /// Traces the object on the doubled grid, on which outlines are judged by their length.
     pub(crate) fn trace(&mut self, object: &Patch, class: ShapeClass) -> Traced {
         self.mask.reset(2 * object.rect.width, 2 * object.rect.height);
-        for (x, y) in object.set_places() {
-            let (x, y) = (2 * x as u32, 2 * y as u32);
-            self.mask.set_run(y, x, x + 2);
-            self.mask.set_run(y + 1, x, x + 2);
+        for run in object.runs() {
+            for y in [2 * run.y, 2 * run.y + 1] {
+                self.mask.set_run(y, 2 * run.x_start, 2 * run.x_end);
+            }
         }
         self.runs.clear();
         for y in 0..self.mask.height() {

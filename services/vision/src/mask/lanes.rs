@@ -5,6 +5,7 @@
 //! bit all the same. On other processors than x86-64 the compiler's baseline is used, on 64-bit ARM that is NEON.
 #![allow(unsafe_code, reason = "calling a function compiled for instructions that were detected")]
 
+use crate::adaptive::{Coarse, Likeness, like};
 use crate::bitmask::BitMask;
 use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
@@ -96,6 +97,40 @@ impl Lanes {
             Set::Avx512 => unsafe { sift_avx512(sieve, frame, grid, mesh, levels) },
         }
     }
+}
+
+impl Lanes {
+    /// [`like::like_bits`] with these instructions.
+    pub(crate) fn like_bits(self, row: &[u8], likeness: &Likeness, bits: &mut [u64]) {
+        match self.0 {
+            Set::Baseline => like::like_bits(row, likeness, bits),
+            // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx2 | Set::Avx512 => unsafe { like_bits_avx2(row, likeness, bits) },
+        }
+    }
+
+    /// [`like::like_words`] with these instructions.
+    pub(crate) fn like_words(self, row: &[u8], coarse: &Coarse, likeness: &Likeness, bits: &mut [u64]) {
+        match self.0 {
+            Set::Baseline => like::like_words(row, coarse, likeness, bits),
+            // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx2 | Set::Avx512 => unsafe { like_words_avx2(row, coarse, likeness, bits) },
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2")]
+fn like_bits_avx2(row: &[u8], likeness: &Likeness, bits: &mut [u64]) {
+    like::like_bits(row, likeness, bits);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2")]
+fn like_words_avx2(row: &[u8], coarse: &Coarse, likeness: &Likeness, bits: &mut [u64]) {
+    like::like_words(row, coarse, likeness, bits);
 }
 
 #[cfg(target_arch = "x86_64")]

@@ -1,0 +1,105 @@
+//! What tells at a glance that no pixel of a run may be the landmark's, by comparing bytes as they lie in the frame.
+//!
+//! The colours that match are enclosed by simpler sets: those of a cone by a box, those of a tint by least differences
+//! between channels. Bounds are rounded outwards, so a colour outside all of them matches nothing. Comparisons are done
+//! for every byte of a run, the first bytes of pixels count.
+
+use super::face::PAIRS;
+
+/// Pixels looked at together.
+pub(crate) const RUN_PX: usize = 32;
+const RUN_BYTES: usize = 3 * RUN_PX;
+
+/// 0xff for the bytes that begin a pixel.
+const PIXEL_STARTS: [u8; RUN_BYTES] = {
+    let mut starts = [0; RUN_BYTES];
+    let mut at = 0;
+    while at < RUN_BYTES {
+        starts[at] = 0xff;
+        at += 3;
+    }
+    starts
+};
+
+/// Simple sets around all colours that match.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Coarse {
+    boxes: Vec<Box3>,
+    tint: Option<Differences>,
+}
+
+/// Lowest level and reach of each channel.
+#[derive(Clone, Copy, Debug)]
+struct Box3 {
+    low: [u8; RUN_BYTES],
+    reach: [u8; RUN_BYTES],
+}
+
+/// By how much the first channel of each pair exceeds the second at least; 0 asks for nothing.
+#[derive(Clone, Copy, Debug)]
+struct Differences {
+    least: [u8; 6],
+}
+
+impl Coarse {
+    pub(crate) fn new(boxes: impl Iterator<Item = [(f32, f32); 3]>, tint: Option<[f32; 6]>) -> Self {
+        let least = |differences: [f32; 6]| Differences {
+            least: differences.map(|d| d.floor().clamp(0.0, 255.0) as u8),
+        };
+        Self { boxes: boxes.filter_map(Box3::new).collect(), tint: tint.map(least) }
+    }
+
+    /// Whether a pixel of these may match. At most [`RUN_PX`] pixels; of fewer, what lies behind them counts as black.
+    #[inline(always)]
+    pub(crate) fn may_match(&self, rgb: &[u8]) -> bool {
+        // Two bytes more, for the channels of the byte that is last.
+        let mut bytes = [0_u8; RUN_BYTES + 2];
+        let length = rgb.len().min(RUN_BYTES);
+        bytes[..length].copy_from_slice(&rgb[..length]);
+        self.boxes.iter().any(|bounds| bounds.holds_any(&bytes))
+            || self.tint.is_some_and(|tint| tint.holds_any(&bytes))
+    }
+}
+
+impl Box3 {
+    fn new(bounds: [(f32, f32); 3]) -> Option<Self> {
+        let mut this = Self { low: [0; RUN_BYTES], reach: [0; RUN_BYTES] };
+        for (channel, (low, high)) in bounds.into_iter().enumerate() {
+            let (low, high) = (low.floor().max(0.0), high.ceil().min(255.0));
+            if low > high {
+                return None;
+            }
+            for at in (channel..RUN_BYTES).step_by(3) {
+                (this.low[at], this.reach[at]) = (low as u8, (high - low) as u8);
+            }
+        }
+        Some(this)
+    }
+
+    #[inline(always)]
+    fn holds_any(&self, bytes: &[u8; RUN_BYTES + 2]) -> bool {
+        let mut inside = [0_u8; RUN_BYTES + 2];
+        for at in 0..RUN_BYTES {
+            inside[at] = u8::from(bytes[at].wrapping_sub(self.low[at]) <= self.reach[at]);
+        }
+        let mut any = 0;
+        for at in 0..RUN_BYTES {
+            any |= inside[at] & inside[at + 1] & inside[at + 2] & PIXEL_STARTS[at];
+        }
+        any != 0
+    }
+}
+
+impl Differences {
+    #[inline(always)]
+    fn holds_any(&self, bytes: &[u8; RUN_BYTES + 2]) -> bool {
+        let mut inside = PIXEL_STARTS;
+        for (&(a, b), &least) in PAIRS.iter().zip(&self.least).filter(|(_, least)| **least > 0) {
+            for at in 0..RUN_BYTES {
+                let more = bytes[at + a].saturating_sub(bytes[at + b]);
+                inside[at] &= if more >= least { 0xff } else { 0 };
+            }
+        }
+        inside.iter().fold(0, |any, &inside| any | inside) != 0
+    }
+}

@@ -1,0 +1,140 @@
+//! The pixels of a region that may be the landmark's.
+//!
+//! Of a large region one row of every three is looked at first, [`coarse`](super::coarse)ly; only where one of its
+//! pixels matches, and next to such places, every pixel is asked. A connected set of matching pixels is found whole if
+//! one of its pixels lies in such a row, which is true of all that are three rows high. Parts of it may be lost only
+//! where it runs on for more than 64 columns between two such rows.
+
+use super::likeness::Likeness;
+use crate::bitmask::BitMask;
+use crate::frame::Frame;
+use crate::geometry::RectPx;
+use crate::mask::Lanes;
+
+use super::coarse::{Coarse, RUN_PX};
+
+/// Rows of which one is looked at first.
+const BAND: u32 = 3;
+/// Regions of fewer pixels are asked pixel by pixel.
+const LARGE_PX: u64 = 40_000;
+/// Columns of a word.
+const WORD_PX: u32 = 64;
+
+/// Marks like pixels, with the memory to do so again and again.
+#[derive(Debug, Default)]
+pub(crate) struct Marker {
+    lanes: Lanes,
+    bits: Vec<u64>,
+    /// For each band and word whether a pixel of the band's middle row matches.
+    alive: Vec<bool>,
+}
+
+impl Marker {
+    /// Makes `mask` the like pixels of `region`.
+    pub(crate) fn mark(&mut self, frame: &Frame, region: RectPx, likeness: &Likeness, mask: &mut BitMask) {
+        mask.reset(region.width, region.height);
+        let words = region.width.div_ceil(WORD_PX) as usize;
+        self.bits.clear();
+        self.bits.resize(words, 0);
+        if u64::from(region.width) * u64::from(region.height) < LARGE_PX {
+            self.bits.fill(u64::MAX);
+            for y in 0..region.height {
+                self.mark_row(frame, region, likeness, y, mask);
+                self.bits.fill(u64::MAX);
+            }
+            return;
+        }
+        self.sift(frame, region, likeness);
+        let bands = region.height.div_ceil(BAND) as usize;
+        for band in 0..bands {
+            if !self.choose_words(band, bands, words) {
+                continue;
+            }
+            let wanted = self.bits.clone();
+            for y in BAND * band as u32..(BAND * (band as u32 + 1)).min(region.height) {
+                self.bits.copy_from_slice(&wanted);
+                self.mark_row(frame, region, likeness, y, mask);
+            }
+        }
+    }
+
+    /// Keeps of `mask` what matches `likeness` too.
+    pub(crate) fn refine(
+        &mut self,
+        frame: &Frame,
+        region: RectPx,
+        likeness: &Likeness,
+        mask: &BitMask,
+        refined: &mut BitMask,
+    ) {
+        refined.reset(region.width, region.height);
+        self.bits.resize(region.width.div_ceil(WORD_PX) as usize, 0);
+        for y in 0..region.height {
+            if mask.is_empty_row(y) {
+                continue;
+            }
+            self.bits.copy_from_slice(mask.row_words(y));
+            self.mark_row(frame, region, likeness, y, refined);
+        }
+    }
+
+    /// Asks the pixels of those words of a row of which `bits` wants any, and marks the wanted ones that match.
+    fn mark_row(&mut self, frame: &Frame, region: RectPx, likeness: &Likeness, y: u32, mask: &mut BitMask) {
+        self.lanes.like_bits(row_of(frame, region, y), likeness, &mut self.bits);
+        for (word, &bits) in self.bits.iter().enumerate() {
+            if bits != 0 {
+                mask.or_word(y, word as u32, bits);
+            }
+        }
+    }
+
+    fn sift(&mut self, frame: &Frame, region: RectPx, likeness: &Likeness) {
+        let coarse = likeness.coarse();
+        self.alive.clear();
+        let mut y = (BAND / 2).min(region.height - 1);
+        for _ in 0..region.height.div_ceil(BAND) {
+            self.bits.fill(0);
+            let row = row_of(frame, region, y.min(region.height - 1));
+            self.lanes.like_words(row, &coarse, likeness, &mut self.bits);
+            self.alive.extend(self.bits.iter().map(|&bits| bits != 0));
+            y += BAND;
+        }
+    }
+
+    /// Makes `bits` all ones for the words of a band in which, or next to which, something is alive. Whether there are any.
+    fn choose_words(&mut self, band: usize, bands: usize, words: usize) -> bool {
+        let near = band.saturating_sub(1)..(band + 2).min(bands);
+        let mut any = false;
+        for word in 0..words {
+            let columns = word.saturating_sub(1)..(word + 2).min(words);
+            let wanted = near.clone().any(|band| self.alive[band * words..][columns.clone()].contains(&true));
+            self.bits[word] = if wanted { u64::MAX } else { 0 };
+            any |= wanted;
+        }
+        any
+    }
+}
+
+fn row_of(frame: &Frame, region: RectPx, y: u32) -> &[u8] {
+    &frame.row(region.y + y)[3 * region.x as usize..][..3 * region.width as usize]
+}
+
+/// Leaves of the wanted `bits` of a row those whose pixel matches. Words without a wanted bit are not looked at.
+#[inline(always)]
+pub(crate) fn like_bits(row: &[u8], likeness: &Likeness, bits: &mut [u64]) {
+    for (bits, pixels) in bits.iter_mut().zip(row.chunks(3 * WORD_PX as usize)) {
+        if *bits != 0 {
+            *bits &= likeness.matching(pixels);
+        }
+    }
+}
+
+/// Sets in `bits` the pixels of a row that match.
+#[inline(always)]
+pub(crate) fn like_words(row: &[u8], coarse: &Coarse, likeness: &Likeness, bits: &mut [u64]) {
+    for (bits, pixels) in bits.iter_mut().zip(row.chunks(3 * WORD_PX as usize)) {
+        if pixels.chunks(3 * RUN_PX).any(|run| coarse.may_match(run)) {
+            *bits = likeness.matching(pixels);
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! One landmark in one frame: what was found updates what is known, and becomes the outcome.
+
+use super::pursue::Pursuit;
+use super::state::{LandmarkState, Track};
+use super::{Scene, reason, report};
+use crate::adaptive::{Candidate, Likeness, Tracer};
+use crate::landmark::Landmark;
+use crate::outcome::{Adaptation, LandmarkOutcome, Miss, Sighting};
+use crate::predict::{Fix, Predictor};
+use crate::register::ShapeVeto;
+
+/// The first sighting of an object needs this score.
+const FIRST_SCORE: f32 = 0.30;
+/// A further object of the same landmark needs this score
+const FURTHER_SCORE: f32 = 0.5;
+/// and this part of the best one's score.
+const FURTHER_PART: f32 = 0.75;
+/// and this part of the area of the one that is known best.
+const FURTHER_SIZE: f32 = 0.12;
+/// A known object below this part of the best one's score is a look-alike.
+const LOOK_ALIKE_PART: f32 = 0.6;
+/// Further objects below this score are doubtful.
+const DOUBTFUL_SCORE: f32 = 0.6;
+/// Further objects are given up after so many frames unseen; the last one never is.
+const GIVE_UP_AFTER: u32 = 45;
+
+/// The outcome of a landmark that is not looked for in this frame.
+pub(super) fn skipped(landmark: &Landmark, instance: u32) -> LandmarkOutcome {
+    report::missed(landmark, instance, Miss::Skipped)
+}
+
+/// Updates the tracks and says what was found.
+pub(super) fn conclude(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    state: &mut LandmarkState,
+    pursuits: Vec<Pursuit>,
+    further: Vec<Candidate>,
+    tracer: &mut Tracer,
+) -> Vec<LandmarkOutcome> {
+    let mut outcomes = Vec::new();
+    let mut best_score = 0.0_f32;
+    for (track, pursuit) in state.tracks.iter_mut().zip(pursuits) {
+        best_score = best_score.max(pursuit.found.as_ref().map_or(0.0, |found| found.score));
+        outcomes.push(advance(scene, landmark, track, pursuit, tracer));
+    }
+    welcome(scene, landmark, state, further, best_score, tracer, &mut outcomes);
+    forget(state);
+    if outcomes.is_empty() {
+        outcomes.push(report::missed(landmark, 0, Miss::NoColour { best: None }));
+    }
+    outcomes
+}
+
+/// Takes up objects that were not known before.
+fn welcome(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    state: &mut LandmarkState,
+    further: Vec<Candidate>,
+    mut best_score: f32,
+    tracer: &mut Tracer,
+    outcomes: &mut Vec<LandmarkOutcome>,
+) {
+    let usual = usual_look(state);
+    let mut least_score = if state.tracks.is_empty() { FIRST_SCORE } else { FURTHER_SCORE };
+    let mut next = further.into_iter().peekable();
+    while let Some(candidate) = next.next() {
+        let least = least_score.max(FURTHER_PART * best_score.max(usual.score));
+        if candidate.score < least || candidate.area_px2 < FURTHER_SIZE * usual.area_px2 {
+            continue;
+        }
+        if state.tracks.len() >= scene.options.max_instances as usize {
+            outcomes.push(skipped(landmark, state.next_instance));
+            break;
+        }
+        let rival = next.peek().map_or(0.0, |next| next.score);
+        let further = !state.tracks.is_empty();
+        // A doubtful one beside an object that is known must show the shape as well.
+        let veto = if further && candidate.score < DOUBTFUL_SCORE {
+            ShapeVeto::Required
+        } else {
+            scene.options.shape_veto
+        };
+        let outcome = match describe(landmark, &candidate, veto, rival, tracer) {
+            Ok(sighting) => begin(scene, landmark, state, &candidate, sighting),
+            Err(_) if further => continue,
+            Err(miss) => report::missed(landmark, state.next_instance, miss),
+        };
+        best_score = best_score.max(candidate.score);
+        least_score = FURTHER_SCORE;
+        outcomes.push(outcome);
+    }
+}
+
+/// What the objects of a landmark that are known look like: a further one must not be much less.
+struct UsualLook {
+    score: f32,
+    area_px2: f32,
+}
+
+fn usual_look(state: &LandmarkState) -> UsualLook {
+    let known = state.tracks.iter().max_by_key(|track| track.sightings);
+    let area_px2 = |track: &Track| track.predictor.fixes.first().map_or(0.0, |fix| fix.area_px2);
+    UsualLook { score: known.map_or(0.0, |track| track.score), area_px2: known.map_or(0.0, area_px2) }
+}
+
+/// Drops objects that stayed unseen, and look-alikes beside something that looks far more like the landmark. The one
+/// that looks most like it is never dropped.
+fn forget(state: &mut LandmarkState) {
+    let best = state.tracks.iter().map(|track| track.score).fold(0.0, f32::max);
+    state.tracks.retain(|track| {
+        let seen = track.misses < GIVE_UP_AFTER.min(3 + track.sightings);
+        track.score >= best || (seen && track.score >= LOOK_ALIKE_PART * best)
+    });
+}
+
+fn advance(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    track: &mut Track,
+    pursuit: Pursuit,
+    tracer: &mut Tracer,
+) -> LandmarkOutcome {
+    let Pursuit { prediction, gate, found, rival, full_frame, elsewhere } = pursuit;
+    let veto = scene.options.shape_veto;
+    let outcome = match found.map(|found| (describe(landmark, &found, veto, rival, tracer), found)) {
+        Some((Ok(sighting), found)) => {
+            track.follow(&found, fix(scene, &found));
+            LandmarkOutcome {
+                innovation_px: Some(prediction.centroid.distance_px(found.centroid)),
+                adaptation: Some(adaptation(scene, &found, full_frame)),
+                ..report::measured(landmark, track.instance, sighting)
+            }
+        }
+        Some((Err(miss), _)) => {
+            track.misses = track.misses.saturating_add(1);
+            report::missed(landmark, track.instance, miss)
+        }
+        None => {
+            track.misses = track.misses.saturating_add(1);
+            let likeness = Likeness::followed(landmark, track.gain, scene.noise_variance);
+            let miss = reason::of_miss(scene, track, &likeness, &prediction, &gate, elsewhere);
+            report::missed(landmark, track.instance, miss)
+        }
+    };
+    LandmarkOutcome { prediction: Some(prediction), gate: Some(gate), ..outcome }
+}
+
+fn begin(
+    scene: &Scene<'_>,
+    landmark: &Landmark,
+    state: &mut LandmarkState,
+    found: &Candidate,
+    sighting: Sighting,
+) -> LandmarkOutcome {
+    let predictor = Predictor::new(scene.options.prediction, fix(scene, found));
+    let instance = state.begin(predictor, found.gain, found.score).instance;
+    LandmarkOutcome {
+        adaptation: Some(adaptation(scene, found, true)),
+        ..report::measured(landmark, instance, sighting)
+    }
+}
+
+fn fix(scene: &Scene<'_>, found: &Candidate) -> Fix {
+    Fix { captured_at: scene.captured_at, centroid: found.centroid, area_px2: found.area_px2 }
+}
+
+/// All that is reported of an object.
+///
+/// # Errors
+/// When its outline is of another shape and `veto` rules that out.
+fn describe(
+    landmark: &Landmark,
+    found: &Candidate,
+    veto: ShapeVeto,
+    rival: f32,
+    tracer: &mut Tracer,
+) -> Result<Sighting, Miss> {
+    let traced = tracer.trace(&found.object, landmark.shape);
+    if veto.rules_out(traced.shape_score) {
+        return Err(Miss::WrongShape { score: traced.shape_score.unwrap_or(0.0) });
+    }
+    Ok(Sighting {
+        centroid: found.centroid,
+        area_px2: found.area_px2,
+        mask_area_2x: traced.mask_area_2x,
+        outline: traced.outline,
+        segments: traced.segments,
+        shape_score: traced.shape_score,
+        observed: found.observed,
+        score: found.score,
+        distinctness: (1.0 - rival / found.score.max(1e-3)).clamp(0.0, 1.0),
+    })
+}
+
+fn adaptation(scene: &Scene<'_>, found: &Candidate, full_frame: bool) -> Adaptation {
+    Adaptation {
+        gain: found.gain,
+        noise_variance: scene.noise_variance,
+        window_px: found.window_px,
+        tolerance_scale: found.tolerance_scale,
+        full_frame,
+    }
+}
