@@ -2,7 +2,12 @@
 //! registration of the same frame in the same minutes.
 //!
 //! Times are the least of many, because other programs only ever add to them.
-#![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "a stopwatch that prints")]
+#![allow(
+    clippy::print_stdout,
+    clippy::disallowed_methods,
+    clippy::disallowed_types,
+    reason = "a stopwatch that prints"
+)]
 #![allow(dead_code, reason = "the scenes are shared with other benches")]
 
 mod scene;

@@ -56,8 +56,15 @@ impl Coarse {
         let mut bytes = [0_u8; RUN_BYTES + 2];
         let length = rgb.len().min(RUN_BYTES);
         bytes[..length].copy_from_slice(&rgb[..length]);
-        self.boxes.iter().any(|bounds| bounds.holds_any(&bytes))
-            || self.tint.is_some_and(|tint| tint.holds_any(&bytes))
+        let mut any = false;
+        // No iterators: their closures are not compiled for the instructions of the caller.
+        for bounds in &self.boxes {
+            any |= bounds.holds_any(&bytes);
+        }
+        if let Some(tint) = &self.tint {
+            any |= tint.holds_any(&bytes);
+        }
+        any
     }
 }
 
@@ -94,12 +101,19 @@ impl Differences {
     #[inline(always)]
     fn holds_any(&self, bytes: &[u8; RUN_BYTES + 2]) -> bool {
         let mut inside = PIXEL_STARTS;
-        for (&(a, b), &least) in PAIRS.iter().zip(&self.least).filter(|(_, least)| **least > 0) {
+        for (&(a, b), &least) in PAIRS.iter().zip(&self.least) {
+            if least == 0 {
+                continue;
+            }
             for at in 0..RUN_BYTES {
                 let more = bytes[at + a].saturating_sub(bytes[at + b]);
                 inside[at] &= if more >= least { 0xff } else { 0 };
             }
         }
-        inside.iter().fold(0, |any, &inside| any | inside) != 0
+        let mut any = 0;
+        for &inside in &inside {
+            any |= inside;
+        }
+        any != 0
     }
 }

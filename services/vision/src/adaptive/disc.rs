@@ -15,6 +15,8 @@ const RADIUS_STEP: f32 = 1.09;
 const EDGE_ALONE: f32 = 0.12;
 /// The middle of a disc reaches to this part of its radius.
 const MIDDLE_RADIUS: f32 = 0.5;
+/// Steps from the best coarse disc to the best one near it.
+const MOST_STEPS: u32 = 8;
 /// Directions in which the surroundings are judged.
 const SECTORS: usize = 8;
 
@@ -73,13 +75,11 @@ pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> 
         }
         radius *= RADIUS_STEP * RADIUS_STEP;
     }
-    let (coarse, _) = best.found?;
-    for scale in [1.0 / RADIUS_STEP, 1.0, RADIUS_STEP] {
-        for v in -1..=1 {
-            for u in -1..=1 {
-                let (x, y) = (coarse.x + 0.5 * u as f32, coarse.y + 0.5 * v as f32);
-                best.try_disc(&tints, Disc { x, y, radius: coarse.radius * scale });
-            }
+    for _ in 0..MOST_STEPS {
+        let (from, merit) = (best.found?.0, best.merit);
+        best.try_around(&tints, from);
+        if best.merit <= merit {
+            break;
         }
     }
     let (disc, contrast) = best.found?;
@@ -98,6 +98,17 @@ struct Best {
 }
 
 impl Best {
+    fn try_around(&mut self, tints: &Tints, disc: Disc) {
+        for scale in [1.0 / RADIUS_STEP, 1.0, RADIUS_STEP] {
+            for v in -1..=1 {
+                for u in -1..=1 {
+                    let (x, y) = (disc.x + 0.5 * u as f32, disc.y + 0.5 * v as f32);
+                    self.try_disc(tints, Disc { x, y, radius: disc.radius * scale });
+                }
+            }
+        }
+    }
+
     fn try_disc(&mut self, tints: &Tints, disc: Disc) {
         // Nothing around it can make a disc stand out more than its own tint.
         if self.found.is_some() && MOST_MERIT * tints.inside(disc) * disc.radius.powf(0.6) <= self.merit {

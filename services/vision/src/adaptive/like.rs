@@ -133,8 +133,105 @@ pub(crate) fn like_bits(row: &[u8], likeness: &Likeness, bits: &mut [u64]) {
 #[inline(always)]
 pub(crate) fn like_words(row: &[u8], coarse: &Coarse, likeness: &Likeness, bits: &mut [u64]) {
     for (bits, pixels) in bits.iter_mut().zip(row.chunks(3 * WORD_PX as usize)) {
-        if pixels.chunks(3 * RUN_PX).any(|run| coarse.may_match(run)) {
+        let mut any = false;
+        for run in pixels.chunks(3 * RUN_PX) {
+            any |= coarse.may_match(run);
+        }
+        if any {
             *bits = likeness.matching(pixels);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::components::Components;
+    use crate::landmark::{ColorStats, Digest, Landmark, ShapeClass, WindowPx};
+    use proptest::prelude::*;
+
+    /// A plain landmark, or a sign whose second shade is its whole face.
+    fn likeness(mean: [f32; 3], shape: ShapeClass) -> Likeness {
+        let plain = ColorStats { mean, variance: [20.0; 3] };
+        let face = ColorStats { mean: mean.map(|m| 0.6 * m + 80.0), variance: [3000.0; 3] };
+        let landmark = Landmark {
+            id: "test".into(),
+            revision: 1,
+            window_px: WindowPx::square(8),
+            shades: vec![plain, face],
+            tolerance: ColorStats::uniform(15.0, 50.0),
+            shape,
+            size_m: None,
+            digest: Digest::default(),
+        };
+        Likeness::anywhere(&landmark, 1.0, [4.0; 3])
+    }
+
+    /// Noise of all colours with flat discs of the landmark's.
+    fn frame(width: u32, height: u32, seed: u64, own: [f32; 3], discs: &[(u32, u32, u32)]) -> Frame {
+        let mut state = seed | 1;
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as u8
+        };
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let rgb = places.flat_map(|(x, y)| {
+            let inside =
+                |&(cx, cy, r): &(u32, u32, u32)| x.abs_diff(cx).pow(2) + y.abs_diff(cy).pow(2) <= r * r;
+            let noise = [next(), next(), next()];
+            if discs.iter().any(inside) { own.map(|m| m as u8) } else { noise }
+        });
+        Frame::from_rgb(width, height, rgb.collect()).unwrap()
+    }
+
+    fn slowly(frame: &Frame, region: RectPx, likeness: &Likeness) -> BitMask {
+        let mut mask = BitMask::new(region.width, region.height);
+        for (y, x) in (0..region.height).flat_map(|y| (0..region.width).map(move |x| (y, x))) {
+            if likeness.matches(frame.pixel(region.x + x, region.y + y)) {
+                mask.set(x, y);
+            }
+        }
+        mask
+    }
+
+    fn landmarks() -> impl Strategy<Value = Likeness> {
+        (any::<[u8; 3]>(), prop_oneof![Just(ShapeClass::Block), Just(ShapeClass::Octagon)])
+            .prop_map(|(mean, shape)| likeness(mean.map(f32::from), shape))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn pixels_of_a_gate_are_those_that_match(
+            likeness in landmarks(), seed in any::<u64>(), x in 0u32..30, width in 1u32..140,
+        ) {
+            let frame = frame(170, 20, seed, [0.0; 3], &[]);
+            let region = RectPx { x, y: 2, width, height: 17 };
+            let (mut marker, mut mask) = (Marker::default(), BitMask::default());
+            marker.mark(&frame, region, &likeness, &mut mask);
+            prop_assert!(mask == slowly(&frame, region, &likeness));
+        }
+
+        #[test]
+        fn of_a_whole_frame_nothing_that_a_sifted_row_meets_is_lost(
+            mean in any::<[u8; 3]>(), seed in any::<u64>(),
+            discs in proptest::collection::vec((0u32..320, 0u32..160, 2u32..20), 1..5),
+        ) {
+            let own = mean.map(f32::from);
+            let (likeness, frame) = (likeness(own, ShapeClass::Block), frame(320, 160, seed, own, &discs));
+            let region = RectPx::whole(frame.size());
+            let (mut marker, mut mask) = (Marker::default(), BitMask::default());
+            marker.mark(&frame, region, &likeness, &mut mask);
+            let all = slowly(&frame, region, &likeness);
+            let mut components = Components::default();
+            components.find(&all);
+            for component in components.list() {
+                let met = components.runs(component).iter().any(|run| run.y % BAND == BAND / 2);
+                for run in components.runs(component).iter().filter(|_| met && component.width() <= WORD_PX) {
+                    prop_assert!((run.x_start..run.x_end).all(|x| mask.get(x, run.y)));
+                }
+            }
         }
     }
 }

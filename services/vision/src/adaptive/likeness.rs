@@ -92,29 +92,31 @@ impl Likeness {
     /// [`matches`](Self::matches), written so that compilers take many pixels at a time.
     #[inline(always)]
     pub(crate) fn matching(&self, rgb: &[u8]) -> u64 {
+        // Loops by index throughout: iterators' closures are not compiled for the instructions of the caller.
         let mut levels = [[0.0_f32; 64]; 3];
-        for (at, pixel) in rgb.as_chunks::<3>().0.iter().enumerate().take(64) {
+        let pixels = rgb.as_chunks::<3>().0;
+        for at in 0..pixels.len().min(64) {
             for c in 0..3 {
-                levels[c][at] = f32::from(pixel[c]);
+                levels[c][at] = pixels[at][c] as f32;
             }
         }
         let mut found = [0_u8; 64];
-        let color = |at: usize| [levels[0][at], levels[1][at], levels[2][at]];
         for cone in &self.cones {
-            for (at, found) in found.iter_mut().enumerate() {
-                *found |= u8::from(cone.holds(color(at)));
+            for at in 0..64 {
+                found[at] |= cone.holds([levels[0][at], levels[1][at], levels[2][at]]) as u8;
             }
         }
         if let Some(face) = &self.face {
-            for (at, found) in found.iter_mut().enumerate() {
-                *found |= u8::from(face.has_tint(color(at)));
+            for at in 0..64 {
+                found[at] |= face.has_tint([levels[0][at], levels[1][at], levels[2][at]]) as u8;
             }
         }
-        let bits = found.as_chunks::<8>().0.iter().enumerate().fold(0, |bits, (at, flags)| {
+        let mut bits = 0;
+        for (at, flags) in found.as_chunks::<8>().0.iter().enumerate() {
             // Gathers the lowest bit of each of eight bytes into one byte.
             let gathered = u64::from_le_bytes(*flags).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-            bits | gathered << (8 * at)
-        });
+            bits |= gathered << (8 * at);
+        }
         if rgb.len() >= 192 { bits } else { bits & ((1 << (rgb.len() / 3)) - 1) }
     }
 
@@ -165,6 +167,9 @@ impl Cone {
     #[inline(always)]
     fn gain_of(&self, color: [f32; 3]) -> f32 {
         let [r, g, b] = self.onto_shade;
-        (color[0] * r + color[1] * g + color[2] * b).max(self.gain.0).min(self.gain.1)
+        let gain = color[0] * r + color[1] * g + color[2] * b;
+        // Plainer than `f32::clamp`, so that compilers take many at a time.
+        let gain = if gain > self.gain.0 { gain } else { self.gain.0 };
+        if gain < self.gain.1 { gain } else { self.gain.1 }
     }
 }

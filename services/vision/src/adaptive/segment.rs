@@ -37,10 +37,13 @@ pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Pa
     let near = seed.dilated(reach);
     let own = Shaded::new(&object_colours(frame, seed));
     let others = Plain::new(&background_colours(frame, seed, &near, likeness));
-    let mut object = near.only(|x, y| {
+    // What lies well inside the seed needs no asking: its colours are the object's.
+    let core = seed.eroded(2);
+    let edge = near.without(&core).only(|x, y| {
         let color = levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32));
         own.distance2(color) < others.distance2(color)
     });
+    let mut object = edge.with(&core);
     if size_px >= OPENING_SIZE_PX {
         object = object.opened(1);
     }
@@ -94,8 +97,8 @@ impl Plain {
     fn new(colours: &[Cluster]) -> Self {
         let mut means = [[FAR; BACKGROUND_COLOURS]; 3];
         for (at, cluster) in colours.iter().enumerate().take(BACKGROUND_COLOURS) {
-            for c in 0..3 {
-                means[c][at] = cluster.mean[c];
+            for (means, mean) in means.iter_mut().zip(cluster.mean) {
+                means[at] = mean;
             }
         }
         Self { means }
@@ -124,8 +127,8 @@ impl Shaded {
     fn new(colours: &[Cluster]) -> Self {
         let mut this = Self { means: [[FAR; 8]; 3], inverse: [0.0; 8] };
         for (at, cluster) in colours.iter().enumerate().take(8) {
-            for c in 0..3 {
-                this.means[c][at] = cluster.mean[c];
+            for (means, mean) in this.means.iter_mut().zip(cluster.mean) {
+                means[at] = mean;
             }
             this.inverse[at] = 1.0 / cluster.mean.iter().map(|m| m * m).sum::<f32>().max(1.0);
         }
@@ -138,7 +141,9 @@ impl Shaded {
         let mut distances = [0.0_f32; 8];
         for at in 0..8 {
             let along = r[at] * color[0] + g[at] * color[1] + b[at] * color[2];
-            let gain = (along * self.inverse[at]).max(SHADING.0).min(SHADING.1);
+            let gain = along * self.inverse[at];
+            let gain = if gain > SHADING.0 { gain } else { SHADING.0 };
+            let gain = if gain < SHADING.1 { gain } else { SHADING.1 };
             let (dr, dg, db) = (gain * r[at] - color[0], gain * g[at] - color[1], gain * b[at] - color[2]);
             distances[at] = dr * dr + dg * dg + db * db;
         }
@@ -151,7 +156,8 @@ fn least<const N: usize>(mut values: [f32; N]) -> f32 {
     let mut half = N / 2;
     while half > 0 {
         for at in 0..half {
-            values[at] = values[at].min(values[at + half]);
+            // Plainer than `f32::min`, which has to think of what is no number.
+            values[at] = if values[at] < values[at + half] { values[at] } else { values[at + half] };
         }
         half /= 2;
     }

@@ -65,6 +65,11 @@ impl Patch {
         self.combined(other, |own, other| own & !other)
     }
 
+    /// The pixels set here or in `other`, a patch of the same rectangle.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        self.combined(other, |own, other| own | other)
+    }
+
     fn combined(&self, other: &Self, operation: impl Fn(u64, u64) -> u64) -> Self {
         let mut result = Self::empty(self.rect);
         for y in 0..self.rect.height {
