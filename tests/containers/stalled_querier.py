@@ -20,7 +20,9 @@ def main() -> None:
     # The first sample fills the channel; the next one blocks the session's receiving thread for good.
     unread: list[object] = [session.declare_subscriber("waymark/v1/**", FifoChannel(1))]
     for asked in itertools.count(1):
-        replies = session.get("waymark/v1/**", FifoChannel(1), target=zenoh.QueryTarget.ALL)
+        # Every second question goes to everybody who is present, also to a follower that does not answer.
+        key = "waymark/v1/**" if asked % 2 else "@waymark/v1/*/*/*/*"
+        replies = session.get(key, FifoChannel(1), target=zenoh.QueryTarget.ALL)
         if asked < 1000:
             unread.append(replies)
         time.sleep(0.01)
