@@ -98,8 +98,6 @@ impl<F: RecordingFile> FileWriter<F> {
             .compression_threads(0)
             .chunk_size(None)
             .disable_seeking(true)
-            // Every chunk and attachment has a checksum of its own; one more pass over all bytes tells nothing new.
-            .calculate_data_section_crc(false)
             .create(NoSeek::new(sink))?;
         Ok(Self {
             mcap,
