@@ -2,6 +2,7 @@
 
 import { followEvents, getJson, getStatus } from "./api.js";
 import { byId } from "./dom.js";
+import { followFleet, showFleet } from "./fleet.js";
 import { showHeader } from "./header.js";
 import { showLandmarks } from "./landmarks.js";
 import { restartLive, showLayers, showLive } from "./live.js";
@@ -61,7 +62,7 @@ function chooseCamera() {
 /** A leader looks through no camera and records nothing: those sections, and what feeds them, are a follower's. */
 function showSections() {
   const isFollower = known.status.role === "follower";
-  for (const section of ["live", "plots-section", "recorder-section"]) byId(section).hidden = !isFollower;
+  for (const section of ["live", "plots-section", "recorder-section", "fleet-section"]) byId(section).hidden = !isFollower;
   if (isFollower && !started) {
     started = true;
     followEvents(
@@ -72,6 +73,7 @@ function showSections() {
       (following) => (known.following = following),
     );
     void askLayers();
+    void followFleet();
   }
 }
 
@@ -83,6 +85,7 @@ function show() {
   showProbe();
   showLandmarks();
   showRecorder();
+  showFleet();
   drawPlots();
 }
 

@@ -155,3 +155,13 @@ test("the leader's page shows what is published, and nothing that a leader does 
   assert.deepEqual(complaints, []);
   await close();
 });
+
+test("the fleet names everyone who is announced, with the state of each in words", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  await page.waitForFunction(() => document.querySelectorAll("#fleet li").length >= 2);
+  const lines = await page.locator("#fleet li").allInnerTexts();
+  assert.ok(lines.some((line) => /leader/.test(line)) && lines.some((line) => /follower \(this one\)/.test(line)), lines.join("\n"));
+  for (const line of lines) assert.match(line, /answers[^]*version \d/);
+  assert.deepEqual(complaints, []);
+  await close();
+});

@@ -63,6 +63,11 @@ export function makeWorld(state) {
       if (state === "stale" && sequence > 60) return "the newest picture is 14.2 s old; the camera has stopped";
       return null;
     },
+    fleet: () => ({ members: [
+      { vehicle: "follower-1", role: "follower", instance: "a1", answers: true, host: "car-1", version: "0.1.0", clock: { offset_ms: 0, uncertainty_ms: 0.1, in_step: true } },
+      { vehicle: "follower-2", role: "follower", instance: "b2", answers: state !== "one-lost", host: "car-2", version: state === "thirty" ? "0.2.0" : "0.1.0", clock: state === "one-lost" ? null : { offset_ms: 1.4, uncertainty_ms: 0.3, in_step: true } },
+      ...(state === "leader-gone" ? [] : [{ vehicle: "lead", role: "leader", instance: "c3", answers: true, host: "truck", version: "0.1.0", clock: { offset_ms: state === "one-lost" ? -3210 : 0.4, uncertainty_ms: 0.2, in_step: state !== "one-lost" } }]),
+    ] }),
     landmarks: () => ({ version: { epoch: 3, version: 7 }, landmarks: set }),
     status: () => state === "leader" ? {
       vehicle: "lead", role: "leader", version: "0.1.0", uptime_s: 4021, router: { connected: true }, landmarks: set.length,
