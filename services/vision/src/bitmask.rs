@@ -1,5 +1,7 @@
 //! A binary picture, one bit a pixel.
 
+use std::ops::Range;
+
 /// A binary picture: rows of 64-bit words, bit `x % 64` of word `x / 64` is column `x`.
 ///
 /// It remembers which words of each row were written, so that clearing and reading cost what was set, not what could
@@ -13,16 +15,29 @@ pub struct BitMask {
     words: Vec<u64>,
     /// For each row the words that may hold set bits.
     touched: Vec<Touched>,
+    /// The rows that may hold set bits.
+    touched_rows: Touched,
 }
 
-/// The words `first..end` of a row; empty when `first >= end`.
+/// The words of a row, or the rows, `first..end`; empty when `first >= end`.
 #[derive(Clone, Copy, Debug)]
 struct Touched {
     first: u32,
     end: u32,
 }
 
+impl Default for Touched {
+    fn default() -> Self {
+        Self::NOTHING
+    }
+}
+
 impl Touched {
+    fn add(&mut self, number: u32) {
+        self.first = self.first.min(number);
+        self.end = self.end.max(number + 1);
+    }
+
     const NOTHING: Self = Self { first: u32::MAX, end: 0 };
 }
 
@@ -67,12 +82,21 @@ impl BitMask {
 
     /// Clears every pixel.
     pub fn clear(&mut self) {
-        for (row, touched) in self.words.chunks_exact_mut(self.words_per_row.max(1)).zip(&mut self.touched) {
+        for y in self.touched_rows() {
+            let touched = std::mem::take(&mut self.touched[y as usize]);
             if touched.first < touched.end {
+                let row = &mut self.words[y as usize * self.words_per_row..][..self.words_per_row];
                 row[touched.first as usize..touched.end as usize].fill(0);
             }
-            *touched = Touched::NOTHING;
         }
+        self.touched_rows = Touched::NOTHING;
+    }
+
+    /// All rows that hold set pixels, and perhaps some between them that hold none.
+    #[must_use]
+    pub fn touched_rows(&self) -> Range<u32> {
+        let Touched { first, end } = self.touched_rows;
+        first.min(end)..end
     }
 
     /// Columns.
@@ -135,9 +159,8 @@ impl BitMask {
             self.width
         );
         self.words[y as usize * self.words_per_row + word as usize] |= bits;
-        let touched = &mut self.touched[y as usize];
-        touched.first = touched.first.min(word);
-        touched.end = touched.end.max(word + 1);
+        self.touched[y as usize].add(word);
+        self.touched_rows.add(y);
     }
 
     /// The words of a row.
@@ -157,7 +180,10 @@ impl BitMask {
     /// Number of set pixels.
     #[must_use]
     pub fn count(&self) -> u64 {
-        (0..self.height).flat_map(|y| self.touched_words(y).1).map(|word| u64::from(word.count_ones())).sum()
+        self.touched_rows()
+            .flat_map(|y| self.touched_words(y).1)
+            .map(|word| u64::from(word.count_ones()))
+            .sum()
     }
 
     /// Appends the runs of row `y`, from the left.

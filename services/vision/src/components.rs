@@ -1,5 +1,7 @@
 //! Connected components of a binary picture, by runs.
 
+use std::cmp::Reverse;
+
 use crate::bitmask::{BitMask, Run};
 
 /// One 8-connected component; its runs are [`Components::runs`].
@@ -55,6 +57,12 @@ impl Component {
         (self.sum_x as f64 / pixels, self.sum_y as f64 / pixels)
     }
 
+    /// Sorts the largest first, of equal ones that whose first pixel comes first.
+    #[must_use]
+    pub fn largest_first(&self) -> (Reverse<u64>, u32) {
+        (Reverse(self.pixels), self.first_run)
+    }
+
     fn add(&mut self, run: Run) {
         let length = u64::from(run.length());
         self.end_run += 1;
@@ -107,7 +115,7 @@ impl Components {
         self.raster.clear();
         self.parent.clear();
         let mut above = 0..0;
-        for y in 0..mask.height() {
+        for y in mask.touched_rows() {
             let first = self.raster.len();
             mask.append_runs(y, &mut self.raster);
             let row = first..self.raster.len();

@@ -102,6 +102,12 @@ impl DoubledGrid {
         start / SAMPLES_PER_PX..(start + u32::from(side)).div_ceil(SAMPLES_PER_PX)
     }
 
+    /// The most pixels that [`pixels_under`](Self::pixels_under) gives for any start.
+    #[must_use]
+    pub fn most_pixels_under(side: u16) -> u32 {
+        u32::from(side) / SAMPLES_PER_PX + 1
+    }
+
     /// How many of the `side` samples from `start` fall on pixel `at`: 0, 1 or 2.
     #[must_use]
     pub fn samples_on(at: u32, start: u32, side: u16) -> u32 {
@@ -114,6 +120,18 @@ impl DoubledGrid {
     #[must_use]
     pub fn whole_pixels(side: u16) -> u32 {
         (u32::from(side) - 1) / SAMPLES_PER_PX
+    }
+
+    /// The samples on pixel `pixel`, where windows may start.
+    #[must_use]
+    pub fn starts_on(pixel: u32) -> Range<u32> {
+        SAMPLES_PER_PX * pixel..SAMPLES_PER_PX * (pixel + 1)
+    }
+
+    /// The pixels on which windows of these starts begin.
+    #[must_use]
+    pub fn pixels_of_starts(starts: &Range<u32>) -> Range<u32> {
+        starts.start / SAMPLES_PER_PX..starts.end.div_ceil(SAMPLES_PER_PX)
     }
 
     /// The first pixel that a window starting at sample `start` covers twice.
@@ -141,6 +159,7 @@ mod tests {
             let counted: u32 = DoubledGrid::pixels_under(start, side)
                 .map(|at| DoubledGrid::samples_on(at, start, side)).sum();
             prop_assert_eq!(counted, u32::from(side));
+            prop_assert!(DoubledGrid::pixels_under(start, side).len() as u32 <= DoubledGrid::most_pixels_under(side));
         }
 
         #[test]

@@ -51,5 +51,5 @@ pub use landmark::{ColorStats, Digest, Landmark, LandmarkSet, SetVersion, ShapeC
 pub use learn::{LearnError, LearnOptions, learn};
 pub use outcome::{Gate, LandmarkOutcome, Miss, Outcome, Prediction, Sighting};
 pub use probe::{NoProbe, Stage, StageProbe};
-pub use register::{Request, ShapeVeto, Workspace, register};
+pub use register::{Request, ShapeVeto, Workspace, register, register_all};
 pub use timestamp::Timestamp;

@@ -4,13 +4,18 @@
 //! every window that lies wholly inside, compare ([`reference`](crate::reference)). Masks of several shades are
 //! united.
 
+mod cells;
 mod chunk;
 mod exact;
 mod lane;
 mod lanes;
+mod mesh;
 mod planes;
 mod powers;
+mod running;
 mod sieve;
+mod sure;
+mod survey;
 
 pub use lanes::Lanes;
 
@@ -19,26 +24,46 @@ use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
 use crate::landmark::Landmark;
 use crate::probe::{Stage, StageProbe};
-use crate::statistics::Acceptance;
+use crate::statistics::{Acceptance, Bounds};
 
-use exact::{Area, BLOCK_PX, Question, Scratch};
-use lane::{MEDIUM_SAMPLES, Medium, NARROW_SAMPLES, Narrow, Wide};
-use sieve::{Levels, Mesh, Sieve};
+use cells::Cells;
+use exact::{Area, BLOCK_PX, Question, Scratch, Test};
+use lane::{MEDIUM_SAMPLES, Medium, NARROW_SAMPLES, Narrow, Precision, Wide};
+use mesh::Mesh;
+use sieve::{Levels, Sieve, Sift};
+use sure::{Proof, Prove, Sure};
+use survey::{Ask, Survey, Take};
 
-/// Above this share of blocks that may match, one pass over the whole region is cheaper than many small areas.
-const DENSE_SHARE: f64 = 0.5;
+/// Above this share of cells that may match by the sieve, a survey, which proves more, is cheaper than testing them.
+const SURVEY_SHARE: f64 = 0.08;
+
+/// Above this share of cells that may match, one pass over the whole region is cheaper than many small areas.
+const DENSE_SHARE: f64 = 0.7;
+
+/// Areas of at least so many blocks and mask rows are worth a proof that they match altogether, before they are tested.
+const PROOF_BLOCKS: u32 = 4;
+const PROOF_ROWS: u32 = 32;
 
 /// Blocks tested side by side: the running sums of so many stay in the first-level cache.
-const STRIP_BLOCKS: u32 = 8;
+const STRIP_BLOCKS: u32 = 16;
+
+/// From so many landmarks of one window on, a survey that they share is cheaper than a sieve for each.
+const SHARED_BY: usize = 3;
 
 /// Finds masks; keeps its memory from one to the next.
 #[derive(Default)]
 pub struct Masker {
     lanes: Lanes,
     accepted: Vec<Acceptance>,
+    averages: Vec<[Bounds<u8>; 3]>,
     levels: Vec<Levels>,
     sieve: Sieve,
+    survey: Survey,
+    shared: Vec<Survey>,
+    cells: Cells,
     areas: Vec<Area>,
+    sure: Sure,
+    unproven: Vec<Area>,
     narrow: Scratch<Narrow>,
     medium: Scratch<Medium>,
     wide: Scratch<Wide>,
@@ -57,6 +82,44 @@ impl Masker {
     /// # Panics
     /// When the grid's region does not lie inside the frame.
     pub fn find<P: StageProbe>(
+        &mut self,
+        frame: &Frame,
+        grid: &DoubledGrid,
+        landmark: &Landmark,
+        mask: &mut BitMask,
+        probe: &mut P,
+    ) {
+        self.forget();
+        self.find_shared(frame, grid, landmark, mask, probe);
+    }
+
+    /// Looks over `frame` once for each grid that several landmarks are looked for on. Until [`forget`](Self::forget),
+    /// [`find_shared`](Self::find_shared) takes what was seen for what is in its frame.
+    pub(crate) fn share(&mut self, frame: &Frame, grids: &(impl Iterator<Item = DoubledGrid> + Clone)) {
+        self.forget();
+        let mut taken = 0;
+        for grid in grids.clone() {
+            let surveyed = self.shared[..taken].iter().any(|survey| survey.grid() == Some(&grid));
+            let sharing = || grids.clone().filter(|other| *other == grid).count();
+            let Some(mesh) = Mesh::of_blocks(grid.window()) else { continue };
+            if surveyed || sharing() < SHARED_BY {
+                continue;
+            }
+            if taken == self.shared.len() {
+                self.shared.push(Survey::default());
+            }
+            self.lanes.run(Take { survey: &mut self.shared[taken], frame, grid: &grid, mesh });
+            taken += 1;
+        }
+    }
+
+    /// Ends what [`share`](Self::share) began.
+    pub(crate) fn forget(&mut self) {
+        self.shared.iter_mut().for_each(Survey::forget);
+    }
+
+    /// As [`find`](Self::find), by what was shared where that is of this grid.
+    pub(crate) fn find_shared<P: StageProbe>(
         &mut self,
         frame: &Frame,
         grid: &DoubledGrid,
@@ -86,31 +149,89 @@ impl Masker {
         if self.accepted.is_empty() {
             return;
         }
-        if let Some(mesh) = Mesh::new(grid.window()) {
-            let levels = |accepted| Levels::new(accepted, grid.samples(), mesh);
-            self.levels.clear();
-            self.levels.extend(self.accepted.iter().filter_map(levels));
-            self.lanes.sift(&mut self.sieve, frame, grid, mesh, &self.levels);
-            if self.sieve.alive_share() <= DENSE_SHARE {
-                self.sieve.areas(mesh, grid.mask_height(), &mut self.areas);
-                return;
-            }
+        if let Some(mesh) = self.look(frame, grid)
+            && self.cells.alive_share() <= DENSE_SHARE
+        {
+            let rows = |band| mesh.mask_rows(band, grid.mask_height());
+            self.cells.take_areas(rows, 0, &mut self.areas);
+            return;
         }
         let blocks = grid.region().width.div_ceil(BLOCK_PX);
         self.areas.push(Area { rows: 0..grid.mask_height(), blocks: 0..blocks });
     }
 
+    /// Sets the cells that may match, by a shared survey, by the sieve, or by a survey where the sieve leaves much;
+    /// `None` for windows too small for any of them.
+    fn look(&mut self, frame: &Frame, grid: &DoubledGrid) -> Option<Mesh> {
+        let (of_rows, of_blocks) = (Mesh::of_single_rows(grid.window())?, Mesh::of_blocks(grid.window())?);
+        if let Some(at) = self.shared.iter().position(|survey| survey.grid() == Some(grid)) {
+            self.average(of_blocks, grid);
+            self.lanes.run(Ask { survey: &self.shared[at], shades: &self.averages, cells: &mut self.cells });
+            return Some(of_blocks);
+        }
+        self.average(of_rows, grid);
+        self.levels.clear();
+        self.levels.extend(self.averages.iter().copied().map(Levels::new));
+        let Self { sieve, levels, cells, .. } = self;
+        self.lanes.run(Sift { sieve, frame, grid, mesh: of_rows, levels, cells });
+        if of_rows == of_blocks || self.cells.alive_share() <= SURVEY_SHARE {
+            return Some(of_rows);
+        }
+        self.average(of_blocks, grid);
+        self.lanes.run(Take { survey: &mut self.survey, frame, grid, mesh: of_blocks });
+        self.lanes.run(Ask { survey: &self.survey, shades: &self.averages, cells: &mut self.cells });
+        Some(of_blocks)
+    }
+
+    /// Averages of sub-blocks that may belong to matching windows, for each shade that has any.
+    fn average(&mut self, mesh: Mesh, grid: &DoubledGrid) {
+        self.averages.clear();
+        let averages = |accepted| mesh.averages(accepted, grid.samples());
+        self.averages.extend(self.accepted.iter().filter_map(averages));
+    }
+
     fn test_areas(&mut self, frame: &Frame, grid: &DoubledGrid, mask: &mut BitMask) {
+        self.prove_areas(frame, grid, mask);
+        let (lanes, areas) = (self.lanes, &self.areas);
         let question = Question { frame, grid, accepted: &self.accepted };
-        for area in self.areas.iter().flat_map(|area| area.strips(STRIP_BLOCKS)) {
-            if grid.samples() <= NARROW_SAMPLES {
-                self.lanes.test_exactly(&question, &area, &mut self.narrow, mask);
-            } else if grid.samples() <= MEDIUM_SAMPLES {
-                self.lanes.test_exactly(&question, &area, &mut self.medium, mask);
-            } else {
-                self.lanes.test_exactly(&question, &area, &mut self.wide, mask);
+        if grid.samples() <= NARROW_SAMPLES {
+            test(lanes, question, areas, &mut self.narrow, mask);
+        } else if grid.samples() <= MEDIUM_SAMPLES {
+            test(lanes, question, areas, &mut self.medium, mask);
+        } else {
+            test(lanes, question, areas, &mut self.wide, mask);
+        }
+    }
+
+    /// Takes from the large areas what is proven to match.
+    fn prove_areas(&mut self, frame: &Frame, grid: &DoubledGrid, mask: &mut BitMask) {
+        let [accepted] = self.accepted.as_slice() else { return };
+        let Some(proof) = Proof::new(accepted, grid) else { return };
+        let question = Question { frame, grid, accepted: &self.accepted };
+        self.unproven.clear();
+        for area in self.areas.drain(..) {
+            if (area.blocks.len() as u32) < PROOF_BLOCKS || (area.rows.len() as u32) < PROOF_ROWS {
+                self.unproven.push(area);
+                continue;
+            }
+            for area in area.strips(STRIP_BLOCKS) {
+                let (sure, rest) = (&mut self.sure, &mut self.unproven);
+                self.lanes.run(Prove { question, proof, area, sure, mask: &mut *mask, rest });
             }
         }
+        std::mem::swap(&mut self.areas, &mut self.unproven);
+    }
+}
+
+fn test<P: Precision>(
+    lanes: Lanes,
+    question: Question<'_>,
+    areas: &[Area],
+    scratch: &mut Scratch<P>,
+    mask: &mut BitMask,
+) {
+    for area in areas.iter().flat_map(|area| area.strips(STRIP_BLOCKS)) {
+        lanes.run(Test { question, area, scratch: &mut *scratch, mask: &mut *mask });
     }
 }
 
@@ -139,7 +260,7 @@ mod tests {
 
     /// Frames of a few flat patches with a little noise, so that masks are neither empty nor full.
     fn frames() -> impl Strategy<Value = Frame> {
-        (1u32..70, 1u32..24, any::<u64>(), 0u8..9).prop_map(|(width, height, seed, noise)| {
+        (1u32..70, 1u32..40, any::<u64>(), 0u8..9).prop_map(|(width, height, seed, noise)| {
             let mut state = seed | 1;
             let mut next = move || {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -163,7 +284,7 @@ mod tests {
         fn every_variant_equals_the_definition(
             frame in frames(), width in 1u16..=32, height in 1u16..=32,
             at in (0.0f32..1.0, 0.0f32..1.0), second in (0.0f32..1.0, 0.0f32..1.0),
-            mean in 0.0f32..60.0, variance in 0.0f32..400.0,
+            mean in 0.0f32..60.0, variance in 0.0f32..400.0, shades in 1usize..=2,
         ) {
             let window = WindowPx { width, height };
             let region = RectPx::whole(frame.size());
@@ -174,12 +295,17 @@ mod tests {
                 let place = |fraction: f32, most: u32| (fraction * most as f32) as u32;
                 WindowSums::at(&frame, &grid, place(at.0, grid.mask_width()), place(at.1, grid.mask_height())).stats()
             };
-            let landmark = landmark(window, vec![shade(at), shade(second)], ColorStats::uniform(mean, variance));
+            let shades = [shade(at), shade(second)][..shades].to_vec();
+            let landmark = landmark(window, shades, ColorStats::uniform(mean, variance));
             let expected = reference::mask(&frame, region, &landmark).unwrap();
             for lanes in Lanes::available() {
                 let mut mask = BitMask::default();
                 Masker::with_lanes(lanes).find(&frame, &grid, &landmark, &mut mask, &mut NoProbe);
                 prop_assert!(mask == expected, "{} differs", lanes.name());
+                let mut masker = Masker::with_lanes(lanes);
+                masker.share(&frame, &std::iter::repeat_n(grid, SHARED_BY));
+                masker.find_shared(&frame, &grid, &landmark, &mut mask, &mut NoProbe);
+                prop_assert!(mask == expected, "{} differs when shared", lanes.name());
             }
         }
     }

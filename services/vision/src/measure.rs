@@ -34,22 +34,26 @@ pub struct Evidence<'a> {
     pub shape_score: Option<f32>,
 }
 
-/// What the component says about the object; `score` and `distinctness` are left at 0 for the ranking.
-#[must_use]
-pub fn sighting(frame: &Frame, grid: &DoubledGrid, evidence: &Evidence<'_>) -> Sighting {
+/// Makes `sighting` what the component says about the object; `score` and `distinctness` are left at 0 for the ranking.
+pub fn sighting(frame: &Frame, grid: &DoubledGrid, evidence: &Evidence<'_>, sighting: &mut Sighting) {
     let (mean_x, mean_y) = evidence.component.mean_pixel();
     let (x, y) = nearest_pixel(evidence.runs, mean_x, mean_y);
-    Sighting {
+    let (mut outline, mut segments) =
+        (std::mem::take(&mut sighting.outline), std::mem::take(&mut sighting.segments));
+    grow_outline(grid, evidence.outline, &mut outline);
+    segments.clear();
+    segments.extend(evidence.segments.iter().map(|segment| grown_segment(grid, segment)));
+    *sighting = Sighting {
         centroid: grid.frame_from_mask(mean_x, mean_y),
         area_px2: own_area_px2(grid, evidence.component, evidence.outline) as f32,
         mask_area_2x: bwarea(evidence.mask, evidence.runs) as f32,
-        outline: grown_outline(grid, evidence.outline),
-        segments: evidence.segments.iter().map(|segment| grown_segment(grid, segment)).collect(),
+        outline,
+        segments,
         shape_score: evidence.shape_score,
         observed: WindowSums::at(frame, grid, x, y).stats(),
         score: 0.0,
         distinctness: 0.0,
-    }
+    };
 }
 
 /// MATLAB's `bwarea` of a component, in samples of the doubled grid: every 2×2 neighbourhood counts 0, 1/4, 1/2, 7/8 or
@@ -93,8 +97,8 @@ fn nearest_pixel(runs: &[Run], x: f64, y: f64) -> (u32, u32) {
     candidates.min_by(|(a, _), (b, _)| a.total_cmp(b)).map_or((0, 0), |(_, pixel)| pixel)
 }
 
-/// The outline of the grown component, without the points that a straight line replaces.
-fn grown_outline(grid: &DoubledGrid, outline: &Outline) -> Vec<PointPx> {
+/// Makes `points` the outline of the grown component, without the points that a straight line replaces.
+fn grow_outline(grid: &DoubledGrid, outline: &Outline, points: &mut Vec<PointPx>) {
     let pixels = outline.pixels();
     let grown = |at: usize| {
         let (bx, by) = outline.pixel_after(at, -2);
@@ -102,13 +106,12 @@ fn grown_outline(grid: &DoubledGrid, outline: &Outline) -> Vec<PointPx> {
         let (x, y) = pixels[at];
         grow(grid, (f64::from(x), f64::from(y)), (f64::from(ax - bx), f64::from(ay - by)))
     };
-    let mut points = Vec::new();
+    points.clear();
     let mut from = 0;
     while from < pixels.len() {
         points.push(grown(from));
         from = straight_until(pixels, from);
     }
-    points
 }
 
 /// The furthest border pixel that a line from number `from` reaches without leaving those between behind; the number of
@@ -216,7 +219,9 @@ mod tests {
             segments: &[],
             shape_score: None,
         };
-        let sighting = sighting(&frame, &grid, &evidence);
+        let mut seen = Sighting::default();
+        sighting(&frame, &grid, &evidence, &mut seen);
+        let sighting = seen;
         assert_eq!(sighting.area_px2, 20.0 * 14.0);
         assert_eq!(sighting.centroid, PointPx::new(20.0, 19.0));
         assert_eq!(sighting.outline.len(), 4);

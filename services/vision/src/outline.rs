@@ -1,5 +1,7 @@
 //! The border of a component: what the Hough transform sees instead of the filled mask.
 
+use std::f64::consts::SQRT_2;
+
 use crate::bitmask::{BitMask, Run};
 
 /// The outer border of one component: its border pixels in clockwise order (as seen on the screen), each an
@@ -42,7 +44,7 @@ impl Outline {
     /// Length of the closed line through the centres of the border pixels, in mask pixels.
     #[must_use]
     pub fn length(&self) -> f64 {
-        self.sides().map(|((ax, ay), (bx, by))| f64::from(bx - ax).hypot(f64::from(by - ay))).sum()
+        self.sides().map(|((ax, ay), (bx, by))| step_length(bx - ax, by - ay)).sum()
     }
 
     /// Pixels inside the border, border included, holes counted as filled (Pick's theorem on the line through the
@@ -72,6 +74,15 @@ impl Outline {
     /// The sides of the closed line through the border pixels.
     fn sides(&self) -> impl Iterator<Item = ((i32, i32), (i32, i32))> {
         self.pixels.iter().copied().zip(self.pixels.iter().copied().cycle().skip(1))
+    }
+}
+
+/// The length of a step to a neighbour, or of none.
+fn step_length(dx: i32, dy: i32) -> f64 {
+    match (dx, dy) {
+        (0, 0) => 0.0,
+        (0, _) | (_, 0) => 1.0,
+        _ => SQRT_2,
     }
 }
 

@@ -56,6 +56,9 @@ pub struct Workspace {
     candidates: Vec<Component>,
     outline: Outline,
     hough: Hough,
+    /// Lists and sightings that came back, to be filled again.
+    spare_lists: Vec<Vec<Sighting>>,
+    spare: Vec<Sighting>,
 }
 
 impl Workspace {
@@ -63,6 +66,14 @@ impl Workspace {
     #[must_use]
     pub fn with_masker(masker: Masker) -> Self {
         Self { masker, ..Self::default() }
+    }
+
+    /// Takes back what [`register`] gave, so that the next one need not ask for memory.
+    pub fn recycle(&mut self, mut sightings: Vec<Sighting>) {
+        self.spare.extend(sightings.drain(..).take(MOST_CANDIDATES.saturating_sub(self.spare.len())));
+        if self.spare_lists.len() < MOST_CANDIDATES {
+            self.spare_lists.push(sightings);
+        }
     }
 
     /// The mask of the last registration, on the doubled grid.
@@ -85,26 +96,61 @@ pub fn register<P: StageProbe>(
     workspace: &mut Workspace,
     probe: &mut P,
 ) -> Result<Vec<Sighting>, Miss> {
+    workspace.masker.forget();
+    register_shared(frame, landmark, request, workspace, probe)
+}
+
+/// As [`register`] for each of `landmarks` in turn; passes over the frame are shared by those that have the same window.
+/// `each` is given the number of the landmark and what was found; what it is given last, it may
+/// [give back](Workspace::recycle).
+pub fn register_all<'l, P: StageProbe>(
+    frame: &Frame,
+    landmarks: impl Iterator<Item = &'l Landmark> + Clone,
+    request: &Request<'_>,
+    workspace: &mut Workspace,
+    probe: &mut P,
+    mut each: impl FnMut(usize, Result<Vec<Sighting>, Miss>, &mut Workspace),
+) {
+    let grids = landmarks.clone().filter_map(|landmark| grid(frame, landmark, request).ok());
+    probe.begin(Stage::Statistics);
+    workspace.masker.share(frame, &grids);
+    probe.end(Stage::Statistics);
+    for (at, landmark) in landmarks.enumerate() {
+        let found = register_shared(frame, landmark, request, workspace, probe);
+        each(at, found, workspace);
+    }
+    workspace.masker.forget();
+}
+
+/// As [`register`], by what the workspace has seen of this frame already.
+fn register_shared<P: StageProbe>(
+    frame: &Frame,
+    landmark: &Landmark,
+    request: &Request<'_>,
+    workspace: &mut Workspace,
+    probe: &mut P,
+) -> Result<Vec<Sighting>, Miss> {
     let grid = grid(frame, landmark, request)?;
-    workspace.masker.find(frame, &grid, landmark, &mut workspace.mask, probe);
+    workspace.masker.find_shared(frame, &grid, landmark, &mut workspace.mask, probe);
     staged(probe, Stage::Components, || workspace.components.find(&workspace.mask));
     choose_candidates(&workspace.components, &mut workspace.candidates);
-    let mut sightings = Vec::with_capacity(workspace.candidates.len());
+    let mut sightings = workspace.spare_lists.pop().unwrap_or_default();
     let mut best_refused: Option<f32> = None;
     for at in 0..workspace.candidates.len() {
         let sighting = examine(frame, landmark, &grid, request, workspace, at, probe);
         if request.shape_veto.rules_out(sighting.shape_score) {
             best_refused = [best_refused, sighting.shape_score].into_iter().flatten().reduce(f32::max);
+            workspace.spare.push(sighting);
         } else {
             sightings.push(sighting);
         }
     }
-    score::rank(&mut sightings);
-    match best_refused {
-        _ if !sightings.is_empty() => Ok(sightings),
-        Some(score) => Err(Miss::WrongShape { score }),
-        None => Err(Miss::NoColour { best: None }),
+    score::rank(&mut sightings, |dropped| workspace.spare.push(dropped));
+    if !sightings.is_empty() {
+        return Ok(sightings);
     }
+    workspace.recycle(sightings);
+    Err(best_refused.map_or(Miss::NoColour { best: None }, |score| Miss::WrongShape { score }))
 }
 
 /// The windows to look at.
@@ -123,7 +169,7 @@ fn grid(frame: &Frame, landmark: &Landmark, request: &Request<'_>) -> Result<Dou
 fn choose_candidates(components: &Components, candidates: &mut Vec<Component>) {
     candidates.clear();
     candidates.extend_from_slice(components.list());
-    candidates.sort_by_key(|component| std::cmp::Reverse(component.pixels));
+    candidates.sort_unstable_by_key(Component::largest_first);
     candidates.truncate(MOST_CANDIDATES);
 }
 
@@ -137,14 +183,15 @@ fn examine<P: StageProbe>(
     at: usize,
     probe: &mut P,
 ) -> Sighting {
-    let Workspace { mask, components, candidates, outline, hough, .. } = workspace;
+    let Workspace { mask, components, candidates, outline, hough, spare, .. } = workspace;
     let component = &candidates[at];
     let runs = components.runs(component);
     staged(probe, Stage::Outline, || outline.trace(mask, runs[0]));
     let segments = staged(probe, Stage::Hough, || hough.segments(outline));
     let shape_score = staged(probe, Stage::Shape, || shape::fit(landmark.shape, outline, segments));
     let evidence = Evidence { mask, component, runs, outline, segments, shape_score };
-    let mut sighting = staged(probe, Stage::Measure, || measure::sighting(frame, grid, &evidence));
+    let mut sighting = spare.pop().unwrap_or_default();
+    staged(probe, Stage::Measure, || measure::sighting(frame, grid, &evidence, &mut sighting));
     sighting.score = score::score(&sighting, landmark.window_px, request.prediction);
     sighting
 }

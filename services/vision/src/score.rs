@@ -1,5 +1,6 @@
 //! How much a sighting deserves belief, and which of several comes first.
 
+use crate::doubled_grid::DoubledGrid;
 use crate::geometry::PointPx;
 use crate::landmark::WindowPx;
 use crate::outcome::{Prediction, Sighting};
@@ -16,29 +17,41 @@ const HALF_SCORE_WINDOWS: f32 = 4.0;
 /// is right far more often, since specks of the landmark's colour are everywhere and large areas of it are not.
 #[must_use]
 pub fn score(sighting: &Sighting, window: WindowPx, prediction: Option<&Prediction>) -> f32 {
-    let window_px2 = f32::from(window.width) * f32::from(window.height) / 4.0;
+    let samples = f64::from(window.width) * f64::from(window.height);
+    let window_px2 = DoubledGrid::area_px2_from_samples(samples) as f32;
     let size = sighting.area_px2 / (sighting.area_px2 + HALF_SCORE_WINDOWS * window_px2);
     let shape = sighting.shape_score.map_or(0.75, |fit| 0.5 + 0.5 * fit);
     size * shape * prediction.map_or(1.0, |prediction| agreement(sighting, prediction))
 }
 
 /// Sorts by score, best first, drops specks and further pieces of objects already there, and notes how distinct each
-/// sighting is.
-pub fn rank(sightings: &mut Vec<Sighting>) {
-    sightings.sort_by(|a, b| b.score.total_cmp(&a.score));
-    drop_pieces(sightings);
+/// sighting is. Hands `dropped` what it drops.
+pub fn rank(sightings: &mut Vec<Sighting>, mut dropped: impl FnMut(Sighting)) {
+    sort_by_score(sightings);
+    let pieces = gather_pieces(sightings);
+    sightings.drain(pieces..).for_each(&mut dropped);
     let best = sightings.first().map_or(0.0, |sighting| sighting.score);
     let runner_up = sightings.get(1).map_or(0.0, |sighting| sighting.score);
-    sightings.retain(|sighting| sighting.score >= SMALLEST_PART_OF_BEST * best);
+    let specks = sightings.partition_point(|sighting| sighting.score >= SMALLEST_PART_OF_BEST * best);
+    sightings.drain(specks..).for_each(dropped);
     for (place, sighting) in sightings.iter_mut().enumerate() {
         let rival = if place == 0 { runner_up } else { best };
         sighting.distinctness = (1.0 - rival / sighting.score).clamp(0.0, 1.0);
     }
 }
 
-/// Keeps of sightings that overlap the best one only: two instances do not cover each other, but a shaded or lettered
-/// object may well fall into several components.
-fn drop_pieces(sightings: &mut Vec<Sighting>) {
+/// Best first, equals in their order; in place, where the standard library's stable sort asks for memory.
+fn sort_by_score(sightings: &mut [Sighting]) {
+    for at in 1..sightings.len() {
+        let score = sightings[at].score;
+        let place = sightings[..at].partition_point(|better| better.score.total_cmp(&score).is_ge());
+        sightings[place..=at].rotate_right(1);
+    }
+}
+
+/// Puts sightings that overlap a better one last, and says how many do not: two instances do not cover each other, but a
+/// shaded or lettered object may well fall into several components.
+fn gather_pieces(sightings: &mut [Sighting]) -> usize {
     let mut kept = 0;
     for at in 0..sightings.len() {
         let bounds = Bounds::of(&sightings[at].outline);
@@ -47,7 +60,7 @@ fn drop_pieces(sightings: &mut Vec<Sighting>) {
             kept += 1;
         }
     }
-    sightings.truncate(kept);
+    kept
 }
 
 /// The bounding box of an outline.
@@ -112,7 +125,7 @@ mod tests {
     #[test]
     fn the_larger_comes_first_and_pieces_and_specks_go() {
         let mut sightings = vec![seen(15.0, 8.0), seen(20.0, 30.0), seen(90.0, 25.0), seen(200.0, 1.0)];
-        rank(&mut sightings);
+        rank(&mut sightings, drop);
         let places: Vec<f32> = sightings.iter().map(|sighting| sighting.centroid.x).collect();
         assert_eq!(places, [20.0, 90.0]);
         assert!(sightings[0].distinctness > 0.0 && sightings[1].distinctness == 0.0);
@@ -121,7 +134,7 @@ mod tests {
     #[test]
     fn one_alone_is_wholly_distinct() {
         let mut sightings = vec![seen(20.0, 30.0)];
-        rank(&mut sightings);
+        rank(&mut sightings, drop);
         assert_eq!(sightings[0].distinctness, 1.0);
     }
 

@@ -1,6 +1,6 @@
 //! Frames like those of the thesis's rink, the same ones in every run.
 
-use vision::{ColorStats, Digest, Frame, Landmark, ShapeClass, SizePx, WindowPx};
+use vision::{ColorStats, Digest, Frame, Landmark, RectPx, ShapeClass, SizePx, WindowPx};
 
 /// Frame sizes that cameras deliver.
 pub(crate) const SIZES: [SizePx; 3] = [
@@ -37,11 +37,27 @@ pub(crate) fn rink_of_blocks(size: SizePx, side: u32) -> Frame {
     Frame::from_rgb(size.width, size.height, rgb).expect("three levels for each pixel")
 }
 
-/// One colour and nothing else.
-pub(crate) fn flat(size: SizePx) -> Frame {
+/// One colour, with or without noise.
+fn flat(size: SizePx, noise_levels: i32) -> Frame {
+    let mut noise = Noise(0x2545_F491_4F6C_DD1D);
     let pixels = (size.width * size.height) as usize;
-    Frame::from_rgb(size.width, size.height, [202, 71, 33].repeat(pixels))
-        .expect("three levels for each pixel")
+    let level = |level: i32| (level + noise_levels * noise.next() / 12).clamp(0, 255) as u8;
+    let rgb = RED.into_iter().cycle().take(3 * pixels).map(level).collect();
+    Frame::from_rgb(size.width, size.height, rgb).expect("three levels for each pixel")
+}
+
+/// A frame with a red block of that side in its middle, and a gate around it of twice the side.
+pub(crate) fn one_block(size: SizePx, side: u32) -> (Frame, RectPx) {
+    let mut frame = rink(size);
+    let mut noise = Noise(0x2545_F491_4F6C_DD1D);
+    let (left, top) = ((size.width - side) / 2, (size.height - side) / 2);
+    for (y, x) in (top..top + side).flat_map(|y| (left..left + side).map(move |x| (y, x))) {
+        let at = 3 * (y * size.width + x) as usize;
+        let pixel = RED.map(|level| (level + noise.next()).clamp(0, 255) as u8);
+        frame.rgb_mut()[at..at + 3].copy_from_slice(&pixel);
+    }
+    let margin = side / 2;
+    (frame, RectPx { x: left - margin, y: top - margin, width: 2 * side, height: 2 * side })
 }
 
 /// A landmark of these levels, window side and tolerances.
@@ -63,15 +79,18 @@ pub(crate) fn red(side: u16) -> Landmark {
     landmark(RED.map(|level| level as f32), side, ColorStats::uniform(15.0, 50.0))
 }
 
-/// What landmarks may meet, from nothing to everything.
-pub(crate) fn contents(size: SizePx) -> [(&'static str, Frame, Landmark); 5] {
+/// What landmarks may meet, from nothing to everything; the last without noise.
+pub(crate) fn contents(size: SizePx, side: u16) -> [(&'static str, Frame, Landmark); 6] {
     let floor = FLOORS[1].map(|level| level as f32);
+    let red = RED.map(|level| level as f32);
+    let (usual, wide) = (ColorStats::uniform(15.0, 50.0), ColorStats::uniform(40.0, 150.0));
     [
-        ("match", rink(size), red(12)),
-        ("nothing", rink(size), landmark([10.0, 240.0, 10.0], 12, ColorStats::uniform(15.0, 50.0))),
-        ("loose", rink(size), landmark([202.0, 71.0, 33.0], 12, ColorStats::uniform(40.0, 150.0))),
-        ("background", rink(size), landmark(floor, 12, ColorStats::uniform(15.0, 50.0))),
-        ("everything", flat(size), red(12)),
+        ("match", rink(size), landmark(red, side, usual)),
+        ("nothing", rink(size), landmark([10.0, 240.0, 10.0], side, usual)),
+        ("loose", rink(size), landmark(red, side, wide)),
+        ("background", rink(size), landmark(floor, side, usual)),
+        ("everything", flat(size, 12), landmark(red, side, wide)),
+        ("flat", flat(size, 0), landmark(red, side, usual)),
     ]
 }
 

@@ -1,9 +1,8 @@
 //! The exact test of all six parameters at every window position of an area, by running sums on the original grid.
 //!
-//! Vertically, the sums of a column over the window's rows follow from those one doubled row higher by one pixel that
-//! enters and one that leaves: V(Y + 1) = V(Y) + p[⌊(Y + h)/2⌋] − p[⌊Y/2⌋], whatever the parity of Y and h.
-//! Horizontally, see [`super::powers`]. Variances are computed only where all means match. Everything runs element by
-//! element over chunks of columns, so that the compiler makes vector code of it; [`super::lanes`] chooses which.
+//! [`super::running`] keeps S and nQ of every window of a mask row. Spreads are computed only where all means match.
+//! Everything runs element by element over chunks of columns, so that the compiler makes vector code of it;
+//! [`super::lanes`] chooses which.
 
 use std::ops::Range;
 
@@ -12,10 +11,11 @@ use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
 use crate::statistics::Acceptance;
 
-use super::chunk::{self, Chunk, WIDTH, join, load, store};
-use super::lane::{Lane, Precision};
+use super::chunk::{self, Chunk, WIDTH, join};
+use super::lane::{Lane, MIDDLE_LEVEL, Precision};
+use super::lanes::Work;
 use super::planes::Planes;
-use super::powers::Powers;
+use super::running::Running;
 
 /// Pixels along x whose two window positions each make one word of the mask.
 pub(super) const BLOCK_PX: u32 = WIDTH as u32;
@@ -48,13 +48,11 @@ pub(super) struct Question<'a> {
 
 /// Memory of the test, kept from area to area.
 pub(super) struct Scratch<P: Precision> {
-    /// S and Q of each channel.
-    sums: [Powers<P::Sum>; 3],
-    squares: [Powers<P::Spread>; 3],
-    entering: Planes,
-    leaving: Planes,
-    /// The mask row whose windows' rows the columns' squares are summed over.
-    squares_row: Option<u32>,
+    planes: Planes,
+    /// S.
+    sums: Running<P::Sum>,
+    /// nQ; kept only while some window's means match.
+    squares: Running<P::Spread>,
     /// Blocks of the present row in which some window's means match.
     pending: Vec<Pending>,
 }
@@ -62,11 +60,9 @@ pub(super) struct Scratch<P: Precision> {
 impl<P: Precision> Default for Scratch<P> {
     fn default() -> Self {
         Self {
-            sums: Default::default(),
-            squares: Default::default(),
-            entering: Planes::default(),
-            leaving: Planes::default(),
-            squares_row: None,
+            planes: Planes::default(),
+            sums: Running::default(),
+            squares: Running::default(),
             pending: Vec::new(),
         }
     }
@@ -80,70 +76,76 @@ struct Pending {
     matching: Matching,
 }
 
-/// 1 where a window matches so far: those on the first, and on the second sample of each column.
-type Matching = [Chunk<u8>; 2];
+/// A bit for each column of a block, set where a window matches so far: those on the first samples, and on the second.
+type Matching = [u32; 2];
 
-/// Sets in `mask` every pixel of `area` whose window matches one of the accepted shades.
-#[inline(always)]
-pub(super) fn test<P: Precision>(
-    question: &Question<'_>,
-    area: &Area,
-    scratch: &mut Scratch<P>,
-    mask: &mut BitMask,
-) {
-    scratch.begin(question, area);
-    for y in area.rows.clone() {
-        if y > area.rows.start {
-            scratch.descend(question, y);
-        }
-        scratch.compare_means(question, area.blocks.len());
-        if !scratch.pending.is_empty() {
-            scratch.sum_squares(question, y);
-            scratch.compare_variances(question, area.blocks.start, y, mask);
+/// The test of one area: sets in `mask` every pixel whose window matches one of the accepted shades.
+pub(super) struct Test<'a, P: Precision> {
+    pub(super) question: Question<'a>,
+    pub(super) area: Area,
+    pub(super) scratch: &'a mut Scratch<P>,
+    pub(super) mask: &'a mut BitMask,
+}
+
+impl<P: Precision> Work for Test<'_, P> {
+    #[inline(always)]
+    fn run(self) {
+        let Self { question, area, scratch, mask } = self;
+        scratch.fit(&question, &area);
+        for y in area.rows.clone() {
+            scratch.sum_levels(&question, y);
+            scratch.compare_means(&question, area.blocks.len());
+            if !scratch.pending.is_empty() {
+                scratch.sum_squares(&question, y);
+                scratch.compare_spreads(&question, area.blocks.start, y, mask);
+            }
         }
     }
 }
 
 impl<P: Precision> Scratch<P> {
-    /// Sums the columns for the area's first row from nothing.
     #[inline(always)]
-    fn begin(&mut self, question: &Question<'_>, area: &Area) {
+    fn fit(&mut self, question: &Question<'_>, area: &Area) {
         let window = question.grid.window();
         let positions = WIDTH * area.blocks.len();
-        let first = BLOCK_PX * area.blocks.start;
-        for channel in 0..3 {
-            self.sums[channel].fit(positions, window.width);
-            self.squares[channel].fit(positions, window.width);
-            self.sums[channel].columns().fill(P::Sum::default());
-        }
-        let columns = self.sums[0].columns().len();
-        self.entering.fit(first, columns);
-        self.leaving.fit(first, columns);
-        self.squares_row = None;
-        for row in DoubledGrid::pixels_under(area.rows.start, window.height) {
-            let samples = DoubledGrid::samples_on(row, area.rows.start, window.height);
-            self.entering.read(question.frame, question.grid, row);
-            for (sums, plane) in self.sums.iter_mut().zip(self.entering.channels()) {
-                accumulate(sums.columns(), plane, P::Sum::from_u32(samples), P::Sum::from_level);
+        self.sums.fit(positions, window.width);
+        self.squares.fit(positions, window.width);
+        let rows = DoubledGrid::most_pixels_under(window.height);
+        self.planes.fit(BLOCK_PX * area.blocks.start, self.sums.columns(), rows as usize);
+    }
+
+    /// Brings the sums S to mask row `y`.
+    #[inline(always)]
+    fn sum_levels(&mut self, question: &Question<'_>, y: u32) {
+        let side = question.grid.window().height;
+        if y > 0 && self.sums.row() == Some(y - 1) {
+            let (enter, leave) = (entering(y, side), leaving(y, side));
+            self.planes.read(question.frame, question.grid, enter);
+            self.planes.read(question.frame, question.grid, leave);
+            self.sums.descend(y, &self.planes, (enter, leave), |enter, leave| {
+                level::<P::Sum>(enter).minus(level(leave))
+            });
+        } else {
+            for row in DoubledGrid::pixels_under(y, side) {
+                self.planes.read(question.frame, question.grid, row);
             }
+            self.sums.begin(y, &self.planes, &weighted_rows(y, side), level);
         }
     }
 
-    /// Goes on from mask row `y - 1` to `y`; squares follow only where they were wanted in the row above.
+    /// Brings the sums nQ to mask row `y`; the rows of pixels were read for the sums.
     #[inline(always)]
-    fn descend(&mut self, question: &Question<'_>, y: u32) {
+    fn sum_squares(&mut self, question: &Question<'_>, y: u32) {
         let side = question.grid.window().height;
-        self.entering.read(question.frame, question.grid, DoubledGrid::pixels_under(y, side).end - 1);
-        self.leaving.read(question.frame, question.grid, DoubledGrid::pixels_under(y - 1, side).start);
-        let planes = || self.entering.channels().into_iter().zip(self.leaving.channels());
-        for (sums, (enter, leave)) in self.sums.iter_mut().zip(planes()) {
-            exchange(sums.columns(), enter, leave, P::Sum::from_level);
-        }
-        if self.squares_row == Some(y - 1) {
-            for (squares, (enter, leave)) in self.squares.iter_mut().zip(planes()) {
-                exchange(squares.columns(), enter, leave, square);
-            }
-            self.squares_row = Some(y);
+        let samples = P::Spread::from_i64(i64::from(question.grid.samples()));
+        if y > 0 && self.squares.row() == Some(y - 1) {
+            let rows = (entering(y, side), leaving(y, side));
+            self.squares.descend(y, &self.planes, rows, |enter, leave| {
+                samples.times(square::<P::Spread>(enter).minus(square(leave)))
+            });
+        } else {
+            let of = |level| samples.times(square(level));
+            self.squares.begin(y, &self.planes, &weighted_rows(y, side), of);
         }
     }
 
@@ -151,111 +153,84 @@ impl<P: Precision> Scratch<P> {
     #[inline(always)]
     fn compare_means(&mut self, question: &Question<'_>, blocks: usize) {
         self.pending.clear();
-        for sums in &mut self.sums {
-            sums.build();
-        }
-        for block in 0..blocks {
-            for (shade, accepted) in question.accepted.iter().enumerate() {
-                if let Some(matching) = self.matching_means(block, accepted) {
+        for (shade, accepted) in question.accepted.iter().enumerate() {
+            let samples = i64::from(question.grid.samples());
+            let within = accepted.sum.map(|bounds| {
+                let from_middle = |sum: u32| i64::from(sum) - MIDDLE_LEVEL * samples;
+                P::sums(from_middle(bounds.low), from_middle(bounds.high))
+            });
+            for block in 0..blocks {
+                let mut matching = [[P::Sum::from_i64(-1); WIDTH]; 2];
+                for (channel, within) in within.iter().enumerate() {
+                    let windows = self.sums.windows(channel, WIDTH * block);
+                    for (matching, windows) in matching.iter_mut().zip(windows) {
+                        *matching = join(*matching, windows, |so_far, sum| so_far.and(within.holds(sum)));
+                    }
+                }
+                let [first, second] = matching;
+                let matching = [chunk::pack(first), chunk::pack(second)];
+                if matching != [0; 2] {
                     self.pending.push(Pending { block, shade, matching });
                 }
             }
         }
     }
 
-    #[inline(always)]
-    fn matching_means(&self, block: usize, accepted: &Acceptance) -> Option<Matching> {
-        let mut matching = [[1; WIDTH]; 2];
-        for (sums, bounds) in self.sums.iter().zip(&accepted.sum) {
-            let low = P::Sum::from_u32(bounds.low);
-            let reach = P::Sum::from_u32(bounds.high - bounds.low);
-            let windows = sums.windows(WIDTH * block);
-            for (matching, windows) in matching.iter_mut().zip(windows) {
-                *matching = join(*matching, windows, |so_far, sum| so_far & u8::from(sum.within(low, reach)));
-            }
-            if !matching.iter().any(chunk::any_set) {
-                return None;
-            }
-        }
-        Some(matching)
-    }
-
-    /// Brings the sums of squares Q of mask row `y` up to date.
-    #[inline(always)]
-    fn sum_squares(&mut self, question: &Question<'_>, y: u32) {
-        if self.squares_row != Some(y) {
-            for squares in &mut self.squares {
-                squares.columns().fill(P::Spread::default());
-            }
-            let side = question.grid.window().height;
-            for row in DoubledGrid::pixels_under(y, side) {
-                let samples = P::Spread::from_u32(DoubledGrid::samples_on(row, y, side));
-                self.entering.read(question.frame, question.grid, row);
-                for (squares, plane) in self.squares.iter_mut().zip(self.entering.channels()) {
-                    accumulate(squares.columns(), plane, samples, square);
-                }
-            }
-            self.squares_row = Some(y);
-        }
-        for squares in &mut self.squares {
-            squares.build();
-        }
-    }
-
     /// Compares D = nQ − S² of the pending windows and sets those that match.
     #[inline(always)]
-    fn compare_variances(&mut self, question: &Question<'_>, first_word: u32, y: u32, mask: &mut BitMask) {
-        let samples = P::Spread::from_u32(question.grid.samples());
-        for &Pending { block, shade, mut matching } in &self.pending {
+    fn compare_spreads(&mut self, question: &Question<'_>, first_word: u32, y: u32, mask: &mut BitMask) {
+        for &Pending { block, shade, matching: by_means } in &self.pending {
+            let mut matching: [Chunk<P::Spread>; 2] = [[P::Spread::from_i64(-1); WIDTH]; 2];
             for (channel, bounds) in question.accepted[shade].spread.iter().enumerate() {
-                let low = P::Spread::from_u64(bounds.low);
-                let reach = P::Spread::from_u64(bounds.high - bounds.low);
-                let sums = self.sums[channel].windows(WIDTH * block);
-                let squares = self.squares[channel].windows(WIDTH * block);
+                let within = P::spreads(bounds.low as i64, bounds.high as i64);
+                let sums = self.sums.windows(channel, WIDTH * block);
+                let squares = self.squares.windows(channel, WIDTH * block);
                 for ((matching, sums), squares) in matching.iter_mut().zip(sums).zip(squares) {
-                    let spreads = join(sums, squares, |sum, squares| {
-                        let sum = P::Spread::from_u64(sum.to_u64());
-                        samples.times(squares).minus(sum.times(sum))
-                    });
-                    *matching = join(*matching, spreads, |so_far, spread| {
-                        so_far & u8::from(spread.within(low, reach))
-                    });
+                    let spreads = join(sums, squares, |sum, squares| squares.minus(P::square(sum)));
+                    *matching = join(*matching, spreads, |so_far, spread| so_far.and(within.holds(spread)));
                 }
             }
-            set(mask, y, first_word + block as u32, &matching);
+            let [first, second] = matching;
+            let matching = [chunk::pack(first) & by_means[0], chunk::pack(second) & by_means[1]];
+            set(mask, y, first_word + block as u32, matching);
         }
     }
 }
 
-/// Adds `samples` times what `of` makes of each level.
+/// The row of pixels that comes under the window on the way to mask row `y`.
 #[inline(always)]
-fn accumulate<T: Lane>(columns: &mut [T], plane: &[u8], samples: T, of: impl Fn(u8) -> T) {
-    for x in (0..columns.len()).step_by(WIDTH) {
-        let sums = join(load(columns, x), load(plane, x), |sum, level| sum.plus(samples.times(of(level))));
-        store(columns, x, sums);
-    }
+fn entering(y: u32, side: u16) -> u32 {
+    DoubledGrid::pixels_under(y, side).end - 1
 }
 
-/// Adds what `of` makes of each level that enters and subtracts that of those that leave.
+/// The row of pixels that the window leaves, or leaves in part, on the way to mask row `y`.
 #[inline(always)]
-fn exchange<T: Lane>(columns: &mut [T], enter: &[u8], leave: &[u8], of: impl Fn(u8) -> T) {
-    for x in (0..columns.len()).step_by(WIDTH) {
-        let change = join(load(enter, x), load(leave, x), |enter, leave| of(enter).minus(of(leave)));
-        store(columns, x, chunk::add(load(columns, x), change));
-    }
+fn leaving(y: u32, side: u16) -> u32 {
+    DoubledGrid::pixels_under(y - 1, side).start
+}
+
+/// The rows of pixels under the windows of mask row `y`, each with its samples.
+#[inline(always)]
+fn weighted_rows(y: u32, side: u16) -> impl Iterator<Item = (u32, u32)> + Clone {
+    DoubledGrid::pixels_under(y, side).map(move |row| (row, DoubledGrid::samples_on(row, y, side)))
+}
+
+#[inline(always)]
+fn level<T: Lane>(level: u8) -> T {
+    T::from_i64(i64::from(i16::from(level) - MIDDLE_LEVEL as i16))
 }
 
 #[inline(always)]
 fn square<T: Lane>(level: u8) -> T {
-    let level = u16::from(level);
-    T::from_u32(u32::from(level * level))
+    let level = i16::from(level) - MIDDLE_LEVEL as i16;
+    T::from_i64(i64::from(level * level))
 }
 
 /// Sets the matching windows in word `word` of row `y`. Windows beyond the mask's right edge do not lie wholly inside the
 /// region and do not count.
 #[inline(always)]
-fn set(mask: &mut BitMask, y: u32, word: u32, [on_first, on_second]: &Matching) {
-    let bits = spread(chunk::pack(on_first)) | spread(chunk::pack(on_second)) << 1;
+pub(super) fn set(mask: &mut BitMask, y: u32, word: u32, [on_first, on_second]: Matching) {
+    let bits = spread(on_first) | spread(on_second) << 1;
     let beyond = (64 * (word + 1)).saturating_sub(mask.width());
     if bits != 0 && beyond < 64 {
         mask.or_word(y, word, bits & u64::MAX >> beyond);

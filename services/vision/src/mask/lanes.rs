@@ -6,13 +6,11 @@
 #![allow(unsafe_code, reason = "calling a function compiled for instructions that were detected")]
 
 use crate::adaptive::{Coarse, Likeness, like};
-use crate::bitmask::BitMask;
-use crate::doubled_grid::DoubledGrid;
-use crate::frame::Frame;
 
-use super::exact::{self, Area, Question, Scratch};
-use super::lane::Precision;
-use super::sieve::{Levels, Mesh, Sieve};
+/// Something that may be compiled for any instruction set: every function down to its loops is `inline(always)`.
+pub(super) trait Work {
+    fn run(self);
+}
 
 /// A set of vector instructions that this processor has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,42 +57,16 @@ impl Lanes {
         }
     }
 
-    /// [`exact::test`] with these instructions.
-    pub(super) fn test_exactly<P: Precision>(
-        self,
-        question: &Question<'_>,
-        area: &Area,
-        scratch: &mut Scratch<P>,
-        mask: &mut BitMask,
-    ) {
+    /// Does `work` with these instructions.
+    pub(super) fn run(self, work: impl Work) {
         match self.0 {
-            Set::Baseline => exact::test(question, area, scratch, mask),
+            Set::Baseline => work.run(),
             // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
             #[cfg(target_arch = "x86_64")]
-            Set::Avx2 => unsafe { exact_avx2(question, area, scratch, mask) },
+            Set::Avx2 => unsafe { run_avx2(work) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
-            Set::Avx512 => unsafe { exact_avx512(question, area, scratch, mask) },
-        }
-    }
-
-    /// [`Sieve::sift`] with these instructions.
-    pub(super) fn sift(
-        self,
-        sieve: &mut Sieve,
-        frame: &Frame,
-        grid: &DoubledGrid,
-        mesh: Mesh,
-        levels: &[Levels],
-    ) {
-        match self.0 {
-            Set::Baseline => sieve.sift(frame, grid, mesh, levels),
-            // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
-            #[cfg(target_arch = "x86_64")]
-            Set::Avx2 => unsafe { sift_avx2(sieve, frame, grid, mesh, levels) },
-            // SAFETY: as above.
-            #[cfg(target_arch = "x86_64")]
-            Set::Avx512 => unsafe { sift_avx512(sieve, frame, grid, mesh, levels) },
+            Set::Avx512 => unsafe { run_avx512(work) },
         }
     }
 }
@@ -135,24 +107,12 @@ fn like_words_avx2(row: &[u8], coarse: &Coarse, likeness: &Likeness, bits: &mut 
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2")]
-fn sift_avx2(sieve: &mut Sieve, frame: &Frame, grid: &DoubledGrid, mesh: Mesh, levels: &[Levels]) {
-    sieve.sift(frame, grid, mesh, levels);
+fn run_avx2(work: impl Work) {
+    work.run();
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512dq,bmi1,bmi2")]
-fn sift_avx512(sieve: &mut Sieve, frame: &Frame, grid: &DoubledGrid, mesh: Mesh, levels: &[Levels]) {
-    sieve.sift(frame, grid, mesh, levels);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi1,bmi2")]
-fn exact_avx2<P: Precision>(q: &Question<'_>, area: &Area, scratch: &mut Scratch<P>, mask: &mut BitMask) {
-    exact::test(q, area, scratch, mask);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512bw,avx512vl,avx512dq,bmi1,bmi2")]
-fn exact_avx512<P: Precision>(q: &Question<'_>, area: &Area, scratch: &mut Scratch<P>, mask: &mut BitMask) {
-    exact::test(q, area, scratch, mask);
+fn run_avx512(work: impl Work) {
+    work.run();
 }

@@ -1,70 +1,74 @@
-//! One row of pixels, split into its three channels.
+//! Rows of pixels, split into their three channels.
 
 use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
 
-use super::chunk::{WIDTH, fit};
+use super::chunk::fit;
 
-/// Levels of R, G and B of a stretch of one row of the region.
+/// Levels of R, G and B of a stretch of those rows of the region that lie under one window.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Planes {
-    channels: [Vec<u8>; 3],
+    /// Row after row, each as R, G, B; row r in place r modulo the number of places.
+    levels: Vec<u8>,
+    /// The row in each place.
+    rows: Vec<Option<u32>>,
     first_column: u32,
     columns: usize,
-    row: Option<u32>,
 }
 
 impl Planes {
-    /// Prepares for `columns` columns, in whole chunks, from column `first` of the region on.
+    /// Prepares for `columns` columns, in whole chunks, from column `first` of the region on, and for windows over
+    /// `rows` rows of pixels, of which one more is needed while they move down.
     #[inline(always)]
-    pub(super) fn fit(&mut self, first: u32, columns: usize) {
-        (self.first_column, self.columns, self.row) = (first, columns, None);
-        for channel in &mut self.channels {
-            fit(channel, columns);
-        }
+    pub(super) fn fit(&mut self, first: u32, columns: usize, rows: usize) {
+        (self.first_column, self.columns) = (first, columns);
+        self.rows.clear();
+        // A power of two: a row's place is found without a division.
+        self.rows.resize((rows + 1).next_power_of_two(), None);
+        fit(&mut self.levels, 3 * columns * self.rows.len());
     }
 
-    /// Reads row `row` of the region, if it is not the one read last. Columns beyond the region are black; no window that
-    /// counts sees them.
+    /// Reads row `row` of the region, if it is not there yet. Columns beyond the region repeat the last one; no window
+    /// that counts sees them.
     #[inline(always)]
     pub(super) fn read(&mut self, frame: &Frame, grid: &DoubledGrid, row: u32) {
-        if self.row.replace(row) == Some(row) {
+        let place = self.place(row);
+        if self.rows[place].replace(row) == Some(row) {
             return;
         }
         let region = grid.region();
         let inside = ((region.width - self.first_column) as usize).min(self.columns);
         let start = 3 * (region.x + self.first_column) as usize;
         let pixels = &frame.row(region.y + row)[start..start + 3 * inside];
-        let (whole, rest) = pixels.as_chunks::<{ 3 * WIDTH }>();
-        let mut x = 0;
-        for pixels in whole {
-            self.split(x, pixels);
-            x += WIDTH;
+        let [red, green, blue] = places_mut(&mut self.levels, self.columns, place);
+        // One plain loop over pixels: for that, not for chunks of it, the compiler has instructions that split three ways.
+        let channels = red.iter_mut().zip(green.iter_mut()).zip(blue.iter_mut());
+        for (((red, green), blue), pixel) in channels.zip(pixels.as_chunks::<3>().0) {
+            [*red, *green, *blue] = *pixel;
         }
-        if x < self.columns {
-            let mut last = [0; 3 * WIDTH];
-            last[..rest.len()].copy_from_slice(rest);
-            self.split(x, &last);
-            x += WIDTH;
-        }
-        for channel in &mut self.channels {
-            channel[x.min(self.columns)..self.columns].fill(0);
+        for channel in [red, green, blue] {
+            let last = inside.checked_sub(1).map_or(0, |last| channel[last]);
+            channel[inside..].fill(last);
         }
     }
 
-    /// The row read last, R, G, B.
     #[inline(always)]
-    pub(super) fn channels(&self) -> [&[u8]; 3] {
-        self.channels.each_ref().map(|channel| &channel[..self.columns])
+    fn place(&self, row: u32) -> usize {
+        row as usize & (self.rows.len() - 1)
     }
 
+    /// One channel of a row that was read.
     #[inline(always)]
-    fn split(&mut self, x: usize, pixels: &[u8; 3 * WIDTH]) {
-        for (channel, levels) in self.channels.iter_mut().enumerate() {
-            let levels = &mut levels[x..x + WIDTH];
-            for at in 0..WIDTH {
-                levels[at] = pixels[3 * at + channel];
-            }
-        }
+    pub(super) fn channel(&self, row: u32, channel: usize) -> &[u8] {
+        let place = self.place(row);
+        &self.levels[(3 * place + channel) * self.columns..][..self.columns]
     }
+}
+
+/// The three channels of a place.
+#[inline(always)]
+fn places_mut(levels: &mut [u8], columns: usize, place: usize) -> [&mut [u8]; 3] {
+    let (red, rest) = levels[3 * place * columns..][..3 * columns].split_at_mut(columns);
+    let (green, blue) = rest.split_at_mut(columns);
+    [red, green, blue]
 }

@@ -30,7 +30,7 @@ impl<T: Lane> Powers<T> {
     #[inline(always)]
     pub(super) fn fit(&mut self, positions: usize, side: u16) {
         self.half = usize::from(side) / 2;
-        self.odd = T::from_u32(u32::from(side) % 2);
+        self.odd = T::from_i64(i64::from(side % 2));
         self.covered = whole_chunks(positions + self.half + 1);
         let levels = self.half.checked_ilog2().map_or(1, |largest| largest as usize + 1);
         if self.levels.len() < levels {
@@ -46,6 +46,24 @@ impl<T: Lane> Powers<T> {
     #[inline(always)]
     pub(super) fn columns(&mut self) -> &mut [T] {
         &mut self.levels[0][..self.covered]
+    }
+
+    /// Sums the column sums over every window that starts at the first `positions` columns: on their first samples, and on
+    /// their second.
+    #[inline(always)]
+    pub(super) fn build_into(&mut self, [on_first, on_second]: &mut [Vec<T>; 2], positions: usize) {
+        self.build();
+        for x in (0..positions).step_by(WIDTH) {
+            let [first, second] = self.windows(x);
+            store(on_first, x, first);
+            store(on_second, x, second);
+        }
+    }
+
+    /// B at the 32 columns from `x`.
+    #[inline(always)]
+    pub(super) fn lesser(&self, x: usize) -> Chunk<T> {
+        load(&self.lesser, x)
     }
 
     /// Sums neighbouring columns.
@@ -85,7 +103,7 @@ impl<T: Lane> Powers<T> {
 
     /// Sums of the windows that start at the 32 columns from `x`: on their first sample, and on their second.
     #[inline(always)]
-    pub(super) fn windows(&self, x: usize) -> [Chunk<T>; 2] {
+    fn windows(&self, x: usize) -> [Chunk<T>; 2] {
         let lesser = load(&self.lesser, x);
         let first_column = load(&self.levels[0], x);
         let next_column = load(&self.levels[0], x + self.half);
@@ -105,18 +123,17 @@ mod tests {
     proptest! {
         #[test]
         fn windows_sum_their_weighted_columns(side in 1u16..200, seed in 1u32..1000) {
-            let mut powers = Powers::<u32>::default();
+            let mut powers = Powers::<i32>::default();
             powers.fit(64, side);
-            let levels: Vec<u32> = (0..powers.columns().len() as u32).map(|x| (x * seed) % 251).collect();
+            let levels: Vec<i32> = (0..powers.columns().len() as u32).map(|x| (x * seed % 251) as i32).collect();
             powers.columns().copy_from_slice(&levels);
-            powers.build();
-            for x in 0..64 {
-                let windows = powers.windows(x / 32 * 32);
-                for phase in 0..2 {
-                    let start = 2 * x as u32 + phase;
-                    let expected: u32 = DoubledGrid::pixels_under(start, side)
-                        .map(|at| DoubledGrid::samples_on(at, start, side) * levels[at as usize]).sum();
-                    prop_assert_eq!(windows[phase as usize][x % 32], expected);
+            let mut sums = [vec![0; 64], vec![0; 64]];
+            powers.build_into(&mut sums, 64);
+            for (phase, sums) in (0..).zip(&sums) {
+                for (start, &sum) in (phase..).step_by(2).zip(sums) {
+                    let expected: i32 = DoubledGrid::pixels_under(start, side)
+                        .map(|at| DoubledGrid::samples_on(at, start, side) as i32 * levels[at as usize]).sum();
+                    prop_assert_eq!(sum, expected);
                 }
             }
         }

@@ -1,0 +1,48 @@
+//! `cargo bench -p vision --bench figures`: what the README states about speed, as tab-separated lines
+//! `figure, content, width, height, window, count, microseconds`. `tests/bench` puts the OpenCV peer beside it.
+//!
+//! Thread CPU time; every figure is measured in several rounds over all figures, and the smallest counts, so that a busy
+//! machine slows all of them or none. An argument selects figures whose line contains it; `--frames DIRECTORY` writes
+//! the frames as raw RGB for other programs.
+#![allow(missing_docs, reason = "a program")]
+#![allow(dead_code, reason = "the scenes are shared with other benches")]
+#![allow(clippy::print_stdout, reason = "its figures are its product")]
+
+mod clock;
+mod imageproc_peer;
+#[path = "../scene/mod.rs"]
+mod scene;
+mod stages;
+mod subjects;
+
+use std::error::Error;
+use std::path::Path;
+
+use clock::Rounds;
+use vision::SizePx;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let (options, filters): (Vec<_>, Vec<_>) = arguments.chunks(2).partition(|pair| pair[0] == "--frames");
+    if let Some([_, directory]) = options.first() {
+        write_frames(Path::new(directory))?;
+    }
+    let wanted =
+        |line: &str| filters.iter().flat_map(|pair| pair.iter()).all(|part| line.contains(part.as_str()));
+    let mut rounds = Rounds::default();
+    subjects::add_all(&mut rounds, &wanted);
+    for (line, smallest_us) in rounds.measure() {
+        println!("{line}\t{smallest_us:.2}");
+    }
+    Ok(())
+}
+
+#[allow(clippy::disallowed_methods, reason = "frames for the other program")]
+fn write_frames(directory: &Path) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all(directory)?;
+    for size in scene::SIZES {
+        let SizePx { width, height } = size;
+        std::fs::write(directory.join(format!("rink-{width}x{height}.rgb")), scene::rink(size).rgb())?;
+    }
+    Ok(())
+}
