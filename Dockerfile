@@ -21,8 +21,8 @@ FROM base AS prebuilt
 COPY Cargo.tom[l] waymar[k] /usr/local/bin/
 
 FROM rust:1.95-slim-bookworm AS build
-# zstd and ring are C and assembly.
-RUN apt-get update && apt-get install -y --no-install-recommends gcc libc6-dev make && rm -rf /var/lib/apt/lists/*
+# zstd and ring are C and assembly, the H.264 codec C++ and assembly.
+RUN apt-get update && apt-get install -y --no-install-recommends gcc g++ libc6-dev make nasm && rm -rf /var/lib/apt/lists/*
 WORKDIR /source
 COPY . .
 # --target keeps the flag from build scripts and procedural macros, which cannot be static.

@@ -7,14 +7,15 @@ use serde_json::Value;
 use tests::workspace;
 
 /// Every crate with those of ours that it may use.
-const ALLOWED: [(&str, &[&str]); 13] = [
+const ALLOWED: [(&str, &[&str]); 14] = [
     ("vision", &[]),
     ("waymark-proto", &["vision"]),
     ("recording", &["vision", "waymark-proto"]),
+    ("video", &["vision"]),
     ("runtime", &[]),
     ("http-face", &[]),
-    ("ingest", &["vision", "waymark-proto", "recording", "runtime", "http-face"]),
-    ("simulator", &["vision", "waymark-proto", "recording", "runtime", "http-face", "ingest"]),
+    ("ingest", &["vision", "waymark-proto", "recording", "video", "runtime", "http-face"]),
+    ("simulator", &["vision", "waymark-proto", "recording", "video", "runtime", "http-face", "ingest"]),
     ("camera", MEMBER),
     ("leader", MEMBER),
     ("follower", MEMBER),
@@ -23,11 +24,12 @@ const ALLOWED: [(&str, &[&str]); 13] = [
     ("tests", BINARY),
 ];
 const MEMBER: &[&str] =
-    &["vision", "waymark-proto", "recording", "runtime", "http-face", "ingest", "simulator"];
+    &["vision", "waymark-proto", "recording", "video", "runtime", "http-face", "ingest", "simulator"];
 const BINARY: &[&str] = &[
     "vision",
     "waymark-proto",
     "recording",
+    "video",
     "runtime",
     "http-face",
     "ingest",
