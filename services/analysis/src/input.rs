@@ -1,11 +1,13 @@
-//! Where offline frames come from: picture files, each a frame, or the cameras of a recording.
+//! Where offline frames come from: picture files, each a frame, films, or the cameras of a recording.
 
+mod films;
 mod pictures;
 mod replay;
 
 use std::sync::Arc;
 
 use ingest::encoded::EncodedFrame;
+use ingest::films::{Film, FilmError};
 use ingest::picture_message::NoPicture;
 use ingest::pictures::{OpenPicturesError, PictureFiles, ReadPictureError};
 use ingest::recorded::Damage;
@@ -14,6 +16,7 @@ use recording::RecordingError;
 use vision::LandmarkSet;
 use vision::follow::{FollowOptions, FollowState};
 
+use films::FilmFrames;
 use pictures::PictureFrames;
 use replay::Replay;
 
@@ -35,7 +38,7 @@ pub enum InputError {
     Uri(#[from] SourceUriError),
     /// The text names a live source.
     #[error(
-        "`{given}` is a live source, which has no end; give a directory or glob of pictures, or a recording"
+        "`{given}` is a live source, which has no end; give a directory or glob of pictures, a film, or a recording"
     )]
     Live {
         /// The text as given.
@@ -44,6 +47,9 @@ pub enum InputError {
     /// The pictures cannot be listed.
     #[error(transparent)]
     Pictures(#[from] OpenPicturesError),
+    /// The film cannot be read.
+    #[error(transparent)]
+    Film(#[from] FilmError),
     /// The recording cannot be read.
     #[error(transparent)]
     Recording(#[from] RecordingError),
@@ -65,7 +71,7 @@ fn on(topic: &Option<String>) -> String {
 
 fn those(topics: &[String]) -> String {
     match topics {
-        [] => "it has no topic with foxglove.CompressedImage or foxglove.RawImage".to_owned(),
+        [] => "it has no topic with foxglove.CompressedImage, CompressedVideo or RawImage".to_owned(),
         topics => format!("its image topics are {}", topics.join(", ")),
     }
 }
@@ -109,6 +115,9 @@ pub enum FrameError {
     /// Its file.
     #[error(transparent)]
     File(#[from] ReadPictureError),
+    /// Its place in a film.
+    #[error(transparent)]
+    Film(#[from] FilmError),
     /// Its message.
     #[error(transparent)]
     Message(#[from] NoPicture),
@@ -130,7 +139,7 @@ impl Input {
             SourceUri::Simulator(_) | SourceUri::Zenoh(_) => {
                 Err(InputError::Live { given: given.to_owned() })
             }
-            source @ (SourceUri::Pictures(_) | SourceUri::Recording { .. }) => {
+            source @ (SourceUri::Pictures(_) | SourceUri::Film(_) | SourceUri::Recording { .. }) => {
                 Ok(Self { given: given.to_owned(), source })
             }
         }
@@ -143,6 +152,7 @@ impl Input {
     pub fn open(&self) -> Result<Frames, InputError> {
         match &self.source {
             SourceUri::Pictures(spec) => Ok(Frames::Pictures(PictureFrames::new(PictureFiles::open(spec)?))),
+            SourceUri::Film(file) => Ok(Frames::Film(Box::new(FilmFrames::new(Film::open(file)?)))),
             SourceUri::Recording { file, topic } => {
                 Ok(Frames::Recording(Box::new(Replay::open(&self.given, file, topic.as_deref())?)))
             }
@@ -157,6 +167,8 @@ impl Input {
 pub enum Frames {
     /// Picture files.
     Pictures(PictureFrames),
+    /// A film.
+    Film(Box<FilmFrames>),
     /// A recording.
     Recording(Box<Replay>),
 }
@@ -166,7 +178,7 @@ impl Frames {
     #[must_use]
     pub fn brings_landmarks(&self) -> bool {
         match self {
-            Self::Pictures(_) => false,
+            Self::Pictures(_) | Self::Film(_) => false,
             Self::Recording(replay) => replay.brings_landmarks(),
         }
     }
@@ -178,6 +190,7 @@ impl Iterator for Frames {
     fn next(&mut self) -> Option<InputFrame> {
         match self {
             Self::Pictures(frames) => frames.next(),
+            Self::Film(frames) => frames.next(),
             Self::Recording(replay) => replay.next(),
         }
     }
@@ -185,6 +198,7 @@ impl Iterator for Frames {
     fn size_hint(&self) -> (usize, Option<usize>) {
         match self {
             Self::Pictures(frames) => frames.size_hint(),
+            Self::Film(frames) => frames.size_hint(),
             Self::Recording(replay) => replay.size_hint(),
         }
     }

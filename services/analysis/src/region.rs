@@ -1,7 +1,9 @@
-//! A picture and a region of it in one word: `FILE#xywh=X,Y,W,H` (W3C Media Fragments URI 1.0, section 4.2.2).
+//! A picture and a region of it in one word: `FILE#xywh=X,Y,W,H`, and `FILE.mp4#t=SECONDS&xywh=X,Y,W,H` for the frame
+//! of a film (W3C Media Fragments URI 1.0, sections 4.2.1 and 4.2.2).
 
 use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Duration;
 
 use vision::{RectPx, SizePx};
 
@@ -10,6 +12,8 @@ use vision::{RectPx, SizePx};
 pub struct PictureRegion {
     /// The picture's file.
     pub file: PathBuf,
+    /// Which frame of a film: the one that is shown then, from the beginning. The first, where none was named.
+    pub shown_at: Option<Duration>,
     /// Which part of it.
     pub region: Option<Region>,
 }
@@ -34,7 +38,7 @@ pub enum RegionError {
     },
     /// A fragment that is not a region.
     #[error(
-        "`#{fragment}` is not a region; write #xywh=X,Y,W,H in whole pixels, for example #xywh=446,314,25,24, or #xywh=percent:X,Y,W,H"
+        "`#{fragment}` is not a region; write #xywh=X,Y,W,H in whole pixels, for example #xywh=446,314,25,24, #xywh=percent:X,Y,W,H, or for the frame of a film #t=SECONDS&xywh=X,Y,W,H"
     )]
     Fragment {
         /// What stood behind the `#`.
@@ -63,15 +67,25 @@ impl FromStr for PictureRegion {
     type Err = RegionError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (file, region) = match text.rsplit_once('#') {
-            Some((file, fragment)) => (file, Some(fragment.parse()?)),
-            None => (text, None),
-        };
+        let (file, fragment) = text.rsplit_once('#').unzip();
+        let file = file.unwrap_or(text);
+        let (mut shown_at, mut region) = (None, None);
+        for part in fragment.into_iter().flat_map(|fragment| fragment.split('&')) {
+            match part.strip_prefix("t=") {
+                Some(seconds) => shown_at = Some(time(seconds, part)?),
+                None => region = Some(part.parse()?),
+            }
+        }
         if file.is_empty() {
             return Err(RegionError::NoFile { text: text.to_owned() });
         }
-        Ok(Self { file: file.into(), region })
+        Ok(Self { file: file.into(), shown_at, region })
     }
+}
+
+fn time(seconds: &str, fragment: &str) -> Result<Duration, RegionError> {
+    let time = seconds.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    time.ok_or_else(|| RegionError::Fragment { fragment: fragment.to_owned() })
 }
 
 impl FromStr for Region {
@@ -149,9 +163,14 @@ mod tests {
     fn a_picture_with_and_without_a_region() {
         let picture: PictureRegion = "a/f037.jpg#xywh=446,314,25,24".parse().unwrap();
         let rect = RectPx { x: 446, y: 314, width: 25, height: 24 };
-        assert_eq!(picture, PictureRegion { file: "a/f037.jpg".into(), region: Some(Region::Pixels(rect)) });
+        let pixels = Some(Region::Pixels(rect));
+        let still = PictureRegion { file: "a/f037.jpg".into(), shown_at: None, region: pixels };
+        assert_eq!(picture, still);
+        let film: PictureRegion = "a.mp4#t=0.5&xywh=446,314,25,24".parse().unwrap();
+        let shown_at = Some(Duration::from_millis(500));
+        assert_eq!(film, PictureRegion { file: "a.mp4".into(), shown_at, region: pixels });
         assert_eq!(region("xywh=pixel:446,314,25,24").in_picture(VGA), Ok(rect));
-        assert_eq!("a.jpg".parse(), Ok(PictureRegion { file: "a.jpg".into(), region: None }));
+        assert_eq!("a.jpg".parse(), Ok(PictureRegion { file: "a.jpg".into(), shown_at: None, region: None }));
     }
 
     #[test]
@@ -163,7 +182,7 @@ mod tests {
 
     #[test]
     fn what_is_not_a_region_is_refused() {
-        for fragment in ["", "t=1", "xywh=1,2,3", "xywh=1,2,3,4,5", "xywh=-1,2,3,4", "xywh=1.5,2,3,4"] {
+        for fragment in ["", "t=x", "xywh=1,2,3", "xywh=1,2,3,4,5", "xywh=-1,2,3,4", "xywh=1.5,2,3,4"] {
             assert!(matches!(fragment.parse::<Region>(), Err(RegionError::Fragment { .. })), "{fragment}");
         }
         for fragment in ["xywh=percent:nan,0,1,1", "xywh=percent:0,0,inf,1", "xywh=percent:-1,0,5,5"] {

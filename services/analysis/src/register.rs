@@ -7,14 +7,14 @@ use std::num::NonZeroUsize;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use ingest::camera_thread::decode_into;
-use ingest::encoded::EncodedFrame;
+use ingest::camera_decoder::CameraDecoder;
+use ingest::encoded::{EncodedFrame, Encoding};
 use vision::follow::{Follow, FollowOptions, FollowState, FrameStamp};
 use vision::{Frame, LandmarkSet, NoProbe, Outcome};
 
 use crate::follow_choice::FollowChoice;
 use crate::input::{Frames, Input, InputFrame, Live};
-use crate::overlays::{OverlayError, Overlays, series_name};
+use crate::overlays::{OverlayError, OverlaySeries, Overlays, Place, series_name};
 use crate::stage_times::{FrameClock, StageTimes, thread_cpu_ns};
 
 /// Events of one input that may wait for their turn in the result; a full queue makes that input's thread wait.
@@ -124,12 +124,25 @@ fn register_inputs(work: &Mutex<std::vec::IntoIter<Work>>, job: &Job) -> StageTi
     let next = || work.lock().unwrap_or_else(PoisonError::into_inner).next();
     while let Some(Work { given, number, frames, events }) = next() {
         let series = |camera: Option<&str>| series_name(&given, number, camera);
-        let mut cameras =
-            Cameras { job, series: &series, cameras: BTreeMap::new(), pixels: Vec::new(), times };
+        let mut cameras = Cameras {
+            job,
+            series: &series,
+            only_input: number.is_none(),
+            cameras: BTreeMap::new(),
+            decoders: BTreeMap::new(),
+            drawn: BTreeMap::new(),
+            pixels: Vec::new(),
+            times,
+        };
         for frame in frames {
             if let Some(event) = cameras.on_frame(frame)
                 && events.send(event).is_err()
             {
+                return cameras.times;
+            }
+        }
+        for event in cameras.finish_overlays() {
+            if events.send(event).is_err() {
                 return cameras.times;
             }
         }
@@ -143,7 +156,10 @@ struct Cameras<'a> {
     job: &'a Job,
     /// What a camera's overlays are called.
     series: &'a dyn Fn(Option<&str>) -> String,
+    only_input: bool,
     cameras: BTreeMap<Option<Arc<str>>, Camera>,
+    decoders: BTreeMap<Option<Arc<str>>, CameraDecoder>,
+    drawn: BTreeMap<Option<Arc<str>>, OverlaySeries>,
     /// Storage of the last frame, used again for the next.
     pixels: Vec<u8>,
     times: StageTimes,
@@ -167,11 +183,14 @@ impl Cameras<'_> {
     /// Looks at one frame; `None` when nobody looked at it when it was recorded either.
     fn on_frame(&mut self, input: InputFrame) -> Option<Event> {
         let InputFrame { frame, camera, name, picture, live } = input;
-        let plan = self.plan(live)?;
+        let Some(plan) = self.plan(live) else {
+            self.pass_over(&camera, &picture.ok()?);
+            return None;
+        };
         let seen = picture.map_err(Into::into).and_then(|picture| self.look_at(&camera, plan, &picture));
         Some(match seen {
             Ok((mut picture, outcome)) => {
-                let drawn = self.draw(frame, camera.as_deref(), &mut picture, &outcome);
+                let drawn = self.draw(frame, &camera, &mut picture, &outcome);
                 self.pixels = picture.into_rgb();
                 match drawn {
                     Ok(()) => Event::Registered { frame, camera, outcome },
@@ -205,7 +224,8 @@ impl Cameras<'_> {
         picture: &EncodedFrame,
     ) -> Result<(Frame, Outcome), Box<dyn Error + Send + Sync>> {
         let begun_ns = thread_cpu_ns();
-        let frame = decode_into(picture, std::mem::take(&mut self.pixels))?;
+        let decoder = self.decoders.entry(camera.clone()).or_default();
+        let frame = decoder.decode_into(picture, std::mem::take(&mut self.pixels))?;
         let decoded_ns = thread_cpu_ns();
         let stamp = FrameStamp { sequence: picture.sequence, captured_at: picture.captured_at };
         let camera = self.cameras.entry(camera.clone()).or_insert_with(|| Camera {
@@ -225,17 +245,35 @@ impl Cameras<'_> {
         Ok((frame, outcome))
     }
 
+    /// Nobody looks at it, but those after it in its stream need it.
+    fn pass_over(&mut self, camera: &Option<Arc<str>>, picture: &EncodedFrame) {
+        if picture.encoding == Encoding::H264 {
+            let decoder = self.decoders.entry(camera.clone()).or_default();
+            let pixels = std::mem::take(&mut self.pixels);
+            // What is damaged here shows in the first picture that somebody looks at.
+            self.pixels = decoder.decode_into(picture, pixels).map(Frame::into_rgb).unwrap_or_default();
+        }
+    }
+
     fn draw(
-        &self,
+        &mut self,
         number: u64,
-        camera: Option<&str>,
+        camera: &Option<Arc<str>>,
         frame: &mut Frame,
         outcome: &Outcome,
     ) -> Result<(), OverlayError> {
-        match &self.job.overlays {
-            Some(overlays) => overlays.write(&(self.series)(camera), number, frame, outcome),
-            None => Ok(()),
-        }
+        let Some(overlays) = &self.job.overlays else { return Ok(()) };
+        let place = if self.only_input && self.drawn.is_empty() { Place::First } else { Place::Later };
+        let series = self
+            .drawn
+            .entry(camera.clone())
+            .or_insert_with(|| overlays.series(&(self.series)(camera.as_deref()), place));
+        series.write(number, frame, outcome)
+    }
+
+    fn finish_overlays(&mut self) -> Vec<Event> {
+        let drawn = std::mem::take(&mut self.drawn).into_values();
+        drawn.filter_map(|series| series.finish().err()).map(Event::NotDrawn).collect()
     }
 }
 

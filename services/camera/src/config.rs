@@ -20,18 +20,49 @@ pub struct CameraConfig {
     pub vehicle: String,
     /// The camera's id.
     pub camera: String,
-    /// Where pictures come from: a directory or glob, `mcap:FILE#topic`, or `sim:SCENE?seed=N`.
+    /// Where pictures come from: a directory or glob, `a film (`FILE.mp4`), `mcap:FILE#topic`, or `sim:SCENE?seed=N`.
     pub source: String,
     /// Pictures per second, for sources that do not bring their own times, within 0.01..=240.
     pub frame_rate_hz: f64,
-    /// JPEG quality of rendered pictures, 1..=100.
+    /// How pictures are sent.
+    pub encoding: SentEncoding,
+    /// JPEG quality of rendered pictures and of films, 1..=100.
     pub jpeg_quality: u8,
+    /// How video is encoded, where pictures are sent as `h264`.
+    pub h264: H264Config,
     /// What happens at the end of a directory or recording.
     pub at_end: AtEnd,
     /// How the others are reached.
     pub zenoh: SessionSettings,
     /// What is logged on standard error.
     pub log: LogSettings,
+}
+
+/// How pictures are sent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SentEncoding {
+    /// Each by itself: rendered pictures and films as JPEG, files and recordings as they are.
+    #[default]
+    Jpeg,
+    /// As video, `foxglove.CompressedVideo`: a fraction of the bytes, but pictures need those before them.
+    H264,
+}
+
+/// How video is encoded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct H264Config {
+    /// Step of quantisation, 1..=51; six more halve the quality. Every picture has the same.
+    pub quantizer: u8,
+    /// A picture that needs no other comes after that many, 1..=600: what a receiver that missed one waits for.
+    pub keyframe_interval: u32,
+}
+
+impl Default for H264Config {
+    fn default() -> Self {
+        Self { quantizer: 24, keyframe_interval: 30 }
+    }
 }
 
 /// What happens at the end of a source.
@@ -66,7 +97,9 @@ impl Default for CameraConfig {
             camera: "front".to_owned(),
             source: "sim:rink?seed=1".to_owned(),
             frame_rate_hz: 30.0,
+            encoding: SentEncoding::default(),
             jpeg_quality: 90,
+            h264: H264Config::default(),
             at_end: AtEnd::default(),
             zenoh: SessionSettings::default(),
             log: LogSettings::default(),

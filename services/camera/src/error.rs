@@ -15,6 +15,15 @@ pub enum CameraError {
     /// The pictures cannot be opened.
     #[error("source: {0}")]
     Pictures(#[from] ingest::pictures::OpenPicturesError),
+    /// The film cannot be read.
+    #[error("source: {0}")]
+    Film(#[from] ingest::films::FilmError),
+    /// A picture cannot be decoded, which sending it as video needs.
+    #[error("source: {0}")]
+    Decode(#[from] ingest::camera_decoder::Undecoded),
+    /// A picture cannot be encoded as video.
+    #[error(transparent)]
+    Video(#[from] video::VideoError),
     /// A picture cannot be read.
     #[error(transparent)]
     ReadPicture(#[from] ingest::pictures::ReadPictureError),

@@ -17,9 +17,9 @@ use zenoh::pubsub::Publisher;
 use zenoh::qos::{CongestionControl, Priority, Reliability};
 use zenoh::query::Queryable;
 
+use crate::coder::Sendable;
 use crate::config::CameraConfig;
 use crate::error::CameraError;
-use crate::shots::Shot;
 
 /// The declared keys of one camera.
 pub(crate) struct Publishing {
@@ -74,23 +74,32 @@ impl Publishing {
     }
 
     /// Publishes a picture and what is known of it under one number and time.
-    pub(crate) async fn publish(&self, shot: Shot, captured_at: Timestamp) {
+    pub(crate) async fn publish(&self, picture: Sendable, captured_at: Timestamp) {
         let attachment = self.stamper.stamp(captured_at.nanos);
-        if let Some(objects) = &shot.truth {
+        if let Some(objects) = &picture.truth {
             let truth = self.truth(objects, attachment).encode_to_vec();
             send(&self.truths, truth, v1::Truth::encoding(), attachment).await;
         }
-        let (payload, encoding) = self.image(shot, captured_at);
+        let (payload, encoding) = self.image(picture, captured_at);
         send(&self.images, payload, encoding, attachment).await;
     }
 
-    fn image(&self, shot: Shot, captured_at: Timestamp) -> (Vec<u8>, String) {
-        match shot.encoding {
+    fn image(&self, picture: Sendable, captured_at: Timestamp) -> (Vec<u8>, String) {
+        match picture.encoding {
             Encoding::File => {
-                let is_png = shot.bytes.starts_with(b"\x89PNG");
+                let is_png = picture.bytes.starts_with(b"\x89PNG");
                 let format = if is_png { PictureFormat::Png } else { PictureFormat::Jpeg };
-                let message = picture_message(format, shot.bytes, captured_at, &self.camera);
+                let message = picture_message(format, picture.bytes, captured_at, &self.camera);
                 (message.encode_to_vec(), foxglove::CompressedImage::encoding())
+            }
+            Encoding::H264 => {
+                let message = foxglove::CompressedVideo {
+                    timestamp: foxglove_time(captured_at),
+                    frame_id: self.camera.clone(),
+                    data: picture.bytes,
+                    format: "h264".to_owned(),
+                };
+                (message.encode_to_vec(), foxglove::CompressedVideo::encoding())
             }
             Encoding::Raw { width, height, step, order } => {
                 let message = foxglove::RawImage {
@@ -100,7 +109,7 @@ impl Publishing {
                     height,
                     encoding: order,
                     step,
-                    data: shot.bytes,
+                    data: picture.bytes,
                 };
                 (message.encode_to_vec(), foxglove::RawImage::encoding())
             }

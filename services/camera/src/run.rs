@@ -8,10 +8,10 @@ use tokio::time::{Instant, sleep_until};
 use vision::Timestamp;
 use zenoh::Session;
 
+use crate::coder::{Sendable, Sendables};
 use crate::config::CameraConfig;
 use crate::error::CameraError;
 use crate::publishing::Publishing;
-use crate::shots::{Shot, Shots};
 
 /// What a camera leaves behind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,17 +32,17 @@ pub async fn run(
     session: Session,
     shutdown: Shutdown,
 ) -> Result<CameraReport, CameraError> {
-    let mut shots = Shots::open(&config)?;
-    let period = period(shots.frame_rate_hz().unwrap_or(config.frame_rate_hz))?;
-    let publishing = Publishing::declare(&session, &config, shots.pinhole()).await?;
+    let mut source = Sendables::open(&config)?;
+    let period = period(source.shots.frame_rate_hz().unwrap_or(config.frame_rate_hz))?;
+    let publishing = Publishing::declare(&session, &config, source.shots.pinhole()).await?;
     tracing::info!(vehicle = config.vehicle, camera = config.camera, source = config.source, "camera");
     let mut report = CameraReport::default();
     let mut due = Instant::now();
     while !shutdown.is_requested() {
-        let shot;
-        (shots, shot) = next_shot(shots).await?;
-        let Some(shot) = shot else { break };
-        due += shot.since_previous.unwrap_or(period);
+        let next;
+        (source, next) = next_picture(source).await?;
+        let Some(picture) = next else { break };
+        due += picture.since_previous.unwrap_or(period);
         if due < Instant::now() {
             // What is late is published at once, and nothing hurries after it.
             report.late += 1;
@@ -52,20 +52,20 @@ pub async fn run(
             () = shutdown.requested() => break,
             () = sleep_until(due) => {}
         }
-        publishing.publish(shot, Timestamp::from_nanos(unix_time_ns())).await;
+        publishing.publish(picture, Timestamp::from_nanos(unix_time_ns())).await;
         report.published += 1;
     }
     Ok(report)
 }
 
-/// Reads or renders on a thread that may take its time.
-async fn next_shot(mut shots: Shots) -> Result<(Shots, Option<Shot>), CameraError> {
-    let (shots, shot) = tokio::task::spawn_blocking(move || {
-        let shot = shots.next();
-        (shots, shot)
+/// Reads, renders or encodes on a thread that may take its time.
+async fn next_picture(mut source: Sendables) -> Result<(Sendables, Option<Sendable>), CameraError> {
+    let (source, next) = tokio::task::spawn_blocking(move || {
+        let next = source.next();
+        (source, next)
     })
     .await?;
-    Ok((shots, shot?))
+    Ok((source, next?))
 }
 
 pub(crate) fn period(frame_rate_hz: f64) -> Result<Duration, CameraError> {

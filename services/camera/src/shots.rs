@@ -2,25 +2,25 @@
 
 use std::time::Duration;
 
-use bytes::Bytes;
-use ingest::encoded::Encoding;
+use ingest::camera_decoder::Undecoded;
+use ingest::camera_thread;
+use ingest::encoded::{EncodedFrame, Encoding};
+use ingest::films::Film;
 use ingest::pictures::PictureFiles;
 use ingest::recorded::{RecordedItem, RecordedItems};
 use ingest::source::SourceUri;
 use simulator::{Simulator, TrueObject};
 use vision::Timestamp;
-use vision::frame::encode::{Quality, encode_jpeg};
 use waymark_proto::images::Pinhole;
 
+use crate::coder::Content;
 use crate::config::{AtEnd, CameraConfig};
 use crate::error::CameraError;
 
 /// One picture that is to be published.
 pub(crate) struct Shot {
-    /// How the bytes are to be read.
-    pub(crate) encoding: Encoding,
     /// The picture.
-    pub(crate) bytes: Bytes,
+    pub(crate) content: Content,
     /// Time since the previous picture, where the source has times of its own.
     pub(crate) since_previous: Option<Duration>,
     /// What is really there, where somebody knows.
@@ -30,9 +30,11 @@ pub(crate) struct Shot {
 /// A source of pictures.
 pub(crate) enum Shots {
     /// Rendered.
-    Simulated { simulator: Box<Simulator>, next: u64, quality: Quality },
+    Simulated { simulator: Box<Simulator>, next: u64 },
     /// Picture files.
     Files { spec: String, files: PictureFiles, at_end: AtEnd },
+    /// A film, whose frames are decoded.
+    Film { film: Box<Film>, previous: Option<Timestamp>, at_end: AtEnd },
     /// A camera of a recording.
     Recorded { items: Box<RecordedItems>, topic: Option<String>, previous: Option<Timestamp>, at_end: AtEnd },
 }
@@ -42,15 +44,12 @@ impl Shots {
     pub(crate) fn open(config: &CameraConfig) -> Result<Self, CameraError> {
         let at_end = config.at_end;
         match config.source.parse()? {
-            SourceUri::Simulator(uri) => Ok(Self::Simulated {
-                simulator: Box::new(Simulator::new(uri.parse()?)?),
-                next: 0,
-                quality: Quality::new(config.jpeg_quality).map_err(|_| CameraError::OutOfRange {
-                    name: "jpeg_quality",
-                    value: config.jpeg_quality.to_string(),
-                    allowed: "1 to 100",
-                })?,
-            }),
+            SourceUri::Simulator(uri) => {
+                Ok(Self::Simulated { simulator: Box::new(Simulator::new(uri.parse()?)?), next: 0 })
+            }
+            SourceUri::Film(file) => {
+                Ok(Self::Film { film: Box::new(Film::open(&file)?), previous: None, at_end })
+            }
             SourceUri::Pictures(spec) => {
                 let files = PictureFiles::open(&spec)?;
                 Ok(Self::Files { spec, files, at_end })
@@ -75,21 +74,35 @@ impl Shots {
     pub(crate) fn frame_rate_hz(&self) -> Option<f64> {
         match self {
             Self::Simulated { simulator, .. } => Some(simulator.options().frame_rate_hz),
-            Self::Files { .. } | Self::Recorded { .. } => None,
+            Self::Files { .. } | Self::Film { .. } | Self::Recorded { .. } => None,
         }
     }
 
     /// The next picture, `None` at the end.
     pub(crate) fn next(&mut self) -> Result<Option<Shot>, CameraError> {
         match self {
-            Self::Simulated { simulator, next, quality } => {
+            Self::Simulated { simulator, next } => {
                 let rendered = simulator.render(*next);
                 *next += 1;
-                let bytes = Bytes::from(encode_jpeg(&rendered.frame, *quality)?);
-                let truth = Some(rendered.truth);
-                Ok(Some(Shot { encoding: Encoding::File, bytes, since_previous: None, truth }))
+                let content = Content::Frame(rendered.frame);
+                Ok(Some(Shot { content, since_previous: None, truth: Some(rendered.truth) }))
             }
             Self::Files { spec, files, at_end } => next_file(spec, files, *at_end),
+            Self::Film { film, previous, at_end } => {
+                let mut next = film.next();
+                if next.is_none() && *at_end == AtEnd::Repeat && previous.take().is_some() {
+                    **film = Film::open(film.path())?;
+                    next = film.next();
+                }
+                while let Some(Err(error)) = &next {
+                    tracing::warn!(%error, "a picture is left out");
+                    next = film.next();
+                }
+                let Some(picture) = next.transpose()? else { return Ok(None) };
+                let since_previous = since(previous, picture.captured_at);
+                let frame = camera_thread::decode(&picture).map_err(Undecoded::from)?;
+                Ok(Some(Shot { content: Content::Frame(frame), since_previous, truth: None }))
+            }
             Self::Recorded { items, topic, previous, at_end } => {
                 match next_recorded(items, topic, previous)? {
                     None if *at_end == AtEnd::Repeat && previous.take().is_some() => {
@@ -110,8 +123,19 @@ fn next_file(spec: &str, files: &mut PictureFiles, at_end: AtEnd) -> Result<Opti
         next = files.next();
     }
     let Some(picture) = next.transpose()? else { return Ok(None) };
-    let bytes = Bytes::from(picture.bytes);
-    Ok(Some(Shot { encoding: Encoding::File, bytes, since_previous: None, truth: None }))
+    let content = Content::Encoded(EncodedFrame {
+        sequence: 0,
+        captured_at: Timestamp::default(),
+        encoding: Encoding::File,
+        bytes: picture.bytes.into(),
+    });
+    Ok(Some(Shot { content, since_previous: None, truth: None }))
+}
+
+/// Time since the picture before, which this one replaces.
+fn since(previous: &mut Option<Timestamp>, captured_at: Timestamp) -> Option<Duration> {
+    let elapsed_s = previous.replace(captured_at).map(|before| captured_at.seconds_since(before));
+    elapsed_s.and_then(|elapsed_s| Duration::try_from_secs_f64(elapsed_s).ok())
 }
 
 /// The next picture of the topic that is meant: the first one met, where none is named.
@@ -125,15 +149,8 @@ fn next_recorded(
         if *meant.get_or_insert_with(|| topic.clone()) != topic {
             continue;
         }
-        let elapsed_s =
-            previous.replace(picture.captured_at).map(|before| picture.captured_at.seconds_since(before));
-        let since_previous = elapsed_s.and_then(|elapsed_s| Duration::try_from_secs_f64(elapsed_s).ok());
-        return Ok(Some(Shot {
-            encoding: picture.encoding,
-            bytes: picture.bytes,
-            since_previous,
-            truth: None,
-        }));
+        let since_previous = since(previous, picture.captured_at);
+        return Ok(Some(Shot { content: Content::Encoded(picture), since_previous, truth: None }));
     }
     Ok(None)
 }

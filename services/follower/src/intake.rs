@@ -7,6 +7,7 @@ use bytes::Bytes;
 use ingest::encoded::EncodedFrame;
 use ingest::mailbox::Mailbox;
 use ingest::picture_message::{NoPicture, PictureKind};
+use ingest::video_thread::VideoQueue;
 use recording::{Journal, Latch};
 use waymark_proto::attachment::Attachment;
 use waymark_proto::gaps::GapCounter;
@@ -24,7 +25,7 @@ enum Refused {
     Picture(#[from] NoPicture),
     /// Another kind of message.
     #[error(
-        "encoding is {0:?}; allowed: application/protobuf;foxglove.CompressedImage or …;foxglove.RawImage"
+        "encoding is {0:?}; allowed: application/protobuf;foxglove.CompressedImage, …;foxglove.CompressedVideo or …;foxglove.RawImage"
     )]
     Encoding(String),
 }
@@ -34,6 +35,7 @@ pub(crate) struct Intake {
     topics: CameraTopics,
     journal: Arc<Journal>,
     mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
+    video: VideoQueue,
     counters: Arc<IntakeCounters>,
     gaps: GapCounter,
     arrivals: u64,
@@ -45,9 +47,10 @@ impl Intake {
         topics: CameraTopics,
         journal: Arc<Journal>,
         mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
+        video: VideoQueue,
         counters: Arc<IntakeCounters>,
     ) -> Self {
-        Self { topics, journal, mailbox, counters, gaps: GapCounter::default(), arrivals: 0 }
+        Self { topics, journal, mailbox, video, counters, gaps: GapCounter::default(), arrivals: 0 }
     }
 
     /// Takes one sample.
@@ -71,12 +74,18 @@ impl Intake {
         let picture = kind.read(sequence, &payload)?;
         let channel = match kind {
             PictureKind::Compressed => &self.topics.compressed_image,
+            PictureKind::Video => &self.topics.compressed_video,
             PictureKind::Raw => &self.topics.raw_image,
         };
         let captured_at_ns = picture.captured_at.nanos;
         let data = Bytes::copy_from_slice(&payload);
         tap::offer(&self.journal, Entry { channel, captured_at_ns, sequence, data, latch: Latch::None });
-        self.mailbox.put(Arc::new(picture));
+        match kind {
+            PictureKind::Video => self.video.offer(picture),
+            PictureKind::Compressed | PictureKind::Raw => {
+                self.mailbox.put(Arc::new(picture));
+            }
+        }
         Ok(())
     }
 }

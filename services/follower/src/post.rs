@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use ingest::camera_thread::{CameraThread, Outlets, Registered};
+use ingest::video_thread::VideoThread;
 use recording::Journal;
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
@@ -17,7 +18,7 @@ use crate::counters::IntakeCounters;
 use crate::error::FollowerError;
 use crate::intake::Intake;
 use crate::results::Results;
-use crate::station::Station;
+use crate::station::{Losses, Station};
 use crate::topics::CameraTopics;
 use crate::web::Face;
 
@@ -28,6 +29,7 @@ const WAITING_RESULTS: usize = 256;
 pub(crate) struct Post {
     id: Id,
     thread: CameraThread,
+    video: VideoThread,
     intake: Intake,
     results: Results,
     waiting: mpsc::Receiver<Arc<Registered>>,
@@ -37,6 +39,7 @@ pub(crate) struct Post {
 /// A camera that looks.
 pub(crate) struct MannedPost {
     thread: CameraThread,
+    video: VideoThread,
     subscriber: Subscriber<()>,
     _calibration: Subscriber<()>,
     handing_on: JoinHandle<()>,
@@ -57,13 +60,17 @@ impl Post {
         let (latest, newest) = watch::channel(None);
         let thread = CameraThread::spawn(id.as_str(), options, landmarks, Outlets { every, latest })
             .map_err(|source| FollowerError::Thread { camera: id.to_string(), source })?;
+        let video = VideoThread::spawn(id.as_str(), thread.mailbox())
+            .map_err(|source| FollowerError::Thread { camera: id.to_string(), source })?;
         let counters = Arc::new(IntakeCounters::default());
         let topics = CameraTopics::new(own, &id);
+        let (mailbox, journal_of_intake) = (thread.mailbox(), Arc::clone(journal));
         let intake =
-            Intake::new(topics.clone(), Arc::clone(journal), thread.mailbox(), Arc::clone(&counters));
+            Intake::new(topics.clone(), journal_of_intake, mailbox, video.queue(), Arc::clone(&counters));
         let results = Results::declare(session, own, &id, topics, options, Arc::clone(journal)).await?;
-        let station = Station::new(id.as_str(), thread.mailbox(), counters, thread.counters(), newest);
-        Ok(Self { id, thread, intake, results, waiting, station: Arc::new(station) })
+        let losses = Losses { intake: counters, video: video.counters(), thread: thread.counters() };
+        let station = Station::new(id.as_str(), thread.mailbox(), losses, newest);
+        Ok(Self { id, thread, video, intake, results, waiting, station: Arc::new(station) })
     }
 
     pub(crate) fn station(&self) -> Arc<Station> {
@@ -77,7 +84,7 @@ impl Post {
         own: &VehicleKeys,
         face: Arc<Face>,
     ) -> Result<MannedPost, FollowerError> {
-        let Self { id, thread, mut intake, results, waiting, station } = self;
+        let Self { id, thread, video, mut intake, results, waiting, station } = self;
         let (topics, journal) = (CameraTopics::new(own, &id), Arc::clone(&face.journal));
         let handing_on = tokio::spawn(results.run(waiting, Arc::clone(&station), face));
         let subscriber = session
@@ -86,7 +93,7 @@ impl Post {
             .await
             .map_err(FollowerError::zenoh("subscribing to a camera's pictures"))?;
         let calibration = calibration::record(session, own, &id, topics, journal).await?;
-        Ok(MannedPost { thread, subscriber, _calibration: calibration, handing_on, station })
+        Ok(MannedPost { thread, video, subscriber, _calibration: calibration, handing_on, station })
     }
 }
 
@@ -97,8 +104,9 @@ impl MannedPost {
         if let Err(error) = self.subscriber.undeclare().await {
             tracing::debug!(%error, "subscription ended with the session");
         }
-        let thread = self.thread;
-        let sound = tokio::task::spawn_blocking(move || thread.finish()).await.unwrap_or(false);
+        let (video, thread) = (self.video, self.thread);
+        let finished = tokio::task::spawn_blocking(move || [video.finish(), thread.finish()]).await;
+        let sound = finished.is_ok_and(|sound| sound == [true; 2]);
         let handed_on = self.handing_on.await.is_ok();
         (!(sound && handed_on)).then(|| self.station.id().to_owned())
     }

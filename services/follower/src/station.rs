@@ -7,6 +7,7 @@ use http_face::STALE_AFTER;
 use ingest::camera_thread::{CameraCounters, Registered};
 use ingest::encoded::EncodedFrame;
 use ingest::mailbox::Mailbox;
+use ingest::video_thread::VideoCounters;
 use tokio::sync::watch;
 
 use crate::counters::IntakeCounters;
@@ -17,12 +18,18 @@ use crate::tap::now_ns;
 /// Frames a second are counted over this time.
 const RATE_SPAN: Duration = Duration::from_secs(3);
 
+/// Where a camera's pictures can get lost, in the order of their way.
+pub(crate) struct Losses {
+    pub(crate) intake: Arc<IntakeCounters>,
+    pub(crate) video: Arc<VideoCounters>,
+    pub(crate) thread: Arc<CameraCounters>,
+}
+
 /// What is known of one camera.
 pub(crate) struct Station {
     id: String,
     mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
-    intake: Arc<IntakeCounters>,
-    thread: Arc<CameraCounters>,
+    losses: Losses,
     latest: watch::Receiver<Option<Arc<Registered>>>,
     rate: Mutex<RateMeter>,
 }
@@ -31,12 +38,11 @@ impl Station {
     pub(crate) fn new(
         id: &str,
         mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
-        intake: Arc<IntakeCounters>,
-        thread: Arc<CameraCounters>,
+        losses: Losses,
         latest: watch::Receiver<Option<Arc<Registered>>>,
     ) -> Self {
         let rate = Mutex::new(RateMeter::over(RATE_SPAN));
-        Self { id: id.to_owned(), mailbox, intake, thread, latest, rate }
+        Self { id: id.to_owned(), mailbox, losses, latest, rate }
     }
 
     pub(crate) fn id(&self) -> &str {
@@ -60,17 +66,20 @@ impl Station {
     }
 
     pub(crate) fn dropped(&self) -> Dropped {
+        let Losses { intake, video, thread } = &self.losses;
         Dropped {
-            missed: self.intake.missed_count(),
+            missed: intake.missed_count(),
+            overrun: video.overrun(),
+            awaiting_keyframe: video.awaiting_keyframe(),
             replaced: self.mailbox.replaced(),
-            undecodable: self.thread.undecodable(),
-            refused: self.intake.refused_count(),
-            unread: self.thread.unread(),
+            undecodable: video.undecodable() + thread.undecodable(),
+            refused: intake.refused_count(),
+            unread: thread.unread(),
         }
     }
 
     pub(crate) fn registered(&self) -> u64 {
-        self.thread.registered()
+        self.losses.thread.registered()
     }
 
     /// How the camera is now.

@@ -125,6 +125,10 @@ pub struct CameraStatus {
 pub struct Dropped {
     /// Lost on the way here, by the gaps in their sequence.
     pub missed: u64,
+    /// Video that arrived faster than it can be decoded.
+    pub overrun: u64,
+    /// Video that needs pictures which are missing, until the next keyframe.
+    pub awaiting_keyframe: u64,
     /// Replaced in the mailbox by a newer one.
     pub replaced: u64,
     /// Damaged or of an unknown format.
@@ -138,9 +142,11 @@ pub struct Dropped {
 impl Dropped {
     /// Each reason with its count.
     #[must_use]
-    pub fn by_reason(&self) -> [(&'static str, u64); 5] {
+    pub fn by_reason(&self) -> [(&'static str, u64); 7] {
         [
             ("missed", self.missed),
+            ("overrun", self.overrun),
+            ("awaiting_keyframe", self.awaiting_keyframe),
             ("replaced", self.replaced),
             ("undecodable", self.undecodable),
             ("refused", self.refused),

@@ -14,6 +14,8 @@ use waymark_proto::{foxglove, v1};
 pub(crate) struct CameraTopics {
     /// JPEG or PNG pictures as they arrived.
     pub(crate) compressed_image: Arc<ChannelSpec>,
+    /// H.264 video as it arrived.
+    pub(crate) compressed_video: Arc<ChannelSpec>,
     /// Bare pixels as they arrived.
     pub(crate) raw_image: Arc<ChannelSpec>,
     /// The camera's calibration.
@@ -47,6 +49,10 @@ impl CameraTopics {
         let key = |stream| keys.camera(camera, stream);
         Self {
             compressed_image: channel::<foxglove::CompressedImage>(
+                topic(CameraStream::Image),
+                key(CameraStream::Image),
+            ),
+            compressed_video: channel::<foxglove::CompressedVideo>(
                 topic(CameraStream::Image),
                 key(CameraStream::Image),
             ),

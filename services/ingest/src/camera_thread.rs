@@ -187,7 +187,8 @@ pub fn decode(picture: &EncodedFrame) -> Result<Frame, DecodeError> {
 pub fn decode_into(picture: &EncodedFrame, pixels: Vec<u8>) -> Result<Frame, DecodeError> {
     let limits = DecodeLimits::default();
     match &picture.encoding {
-        Encoding::File => decode::decode_into(&picture.bytes, &limits, pixels),
+        // A single picture of a stream is refused for what its first bytes are: no picture.
+        Encoding::File | Encoding::H264 => decode::decode_into(&picture.bytes, &limits, pixels),
         &Encoding::Raw { width, height, step, ref order } => {
             let raw = RawPicture { width, height, encoding: order.parse()?, step, data: &picture.bytes };
             decode::decode_raw(raw, &limits, pixels)

@@ -9,6 +9,8 @@ use vision::Timestamp;
 pub enum Encoding {
     /// A self-contained file, JPEG or PNG, told apart by its first bytes.
     File,
+    /// One picture of an H.264 stream, Annex B; only [`crate::camera_decoder`] reads it, since it may need others.
+    H264,
     /// Bare pixels: rows of `step` bytes in the named order (`rgb8`, `bgr8`, `mono8`, …).
     Raw {
         /// Columns.

@@ -15,6 +15,9 @@ pub enum NoPicture {
     /// Its description cannot be used.
     #[error(transparent)]
     Description(#[from] UnusablePicture),
+    /// Video of another kind.
+    #[error("video format is {0:?}; allowed: \"h264\"")]
+    VideoFormat(String),
 }
 
 /// What kind of message a picture comes in.
@@ -22,6 +25,8 @@ pub enum NoPicture {
 pub enum PictureKind {
     /// `foxglove.CompressedImage`.
     Compressed,
+    /// `foxglove.CompressedVideo`.
+    Video,
     /// `foxglove.RawImage`.
     Raw,
 }
@@ -32,6 +37,7 @@ impl PictureKind {
     pub fn of_schema(schema: &str) -> Option<Self> {
         match schema {
             foxglove::CompressedImage::SCHEMA => Some(Self::Compressed),
+            foxglove::CompressedVideo::SCHEMA => Some(Self::Video),
             foxglove::RawImage::SCHEMA => Some(Self::Raw),
             _ => None,
         }
@@ -44,6 +50,7 @@ impl PictureKind {
     pub fn read(self, sequence: u64, message: &[u8]) -> Result<EncodedFrame, NoPicture> {
         match self {
             Self::Compressed => compressed(sequence, message),
+            Self::Video => video(sequence, message),
             Self::Raw => raw(sequence, message),
         }
     }
@@ -54,6 +61,16 @@ fn compressed(sequence: u64, message: &[u8]) -> Result<EncodedFrame, NoPicture> 
     images::picture_format(&image)?;
     let captured_at = images::picture_captured_at(&image)?;
     Ok(EncodedFrame { sequence, captured_at, encoding: Encoding::File, bytes: image.data })
+}
+
+fn video(sequence: u64, message: &[u8]) -> Result<EncodedFrame, NoPicture> {
+    let picture = foxglove::CompressedVideo::from_payload(message)?;
+    if picture.format != "h264" {
+        return Err(NoPicture::VideoFormat(picture.format.chars().take(32).collect()));
+    }
+    let timestamp = picture.timestamp.as_ref().ok_or(UnusablePicture::NoTimestamp)?;
+    let captured_at = images::domain_time(timestamp);
+    Ok(EncodedFrame { sequence, captured_at, encoding: Encoding::H264, bytes: picture.data })
 }
 
 fn raw(sequence: u64, message: &[u8]) -> Result<EncodedFrame, NoPicture> {
@@ -79,6 +96,21 @@ mod tests {
         let message = picture_message(PictureFormat::Jpeg, Bytes::from_static(b"jpeg"), at, "front");
         let frame = PictureKind::Compressed.read(7, &message.encode_to_vec()).unwrap();
         assert_eq!((frame.sequence, frame.captured_at, &frame.bytes[..]), (7, at, &b"jpeg"[..]));
+    }
+
+    #[test]
+    fn video_is_a_picture_of_a_stream_if_it_is_h264() {
+        let at = Timestamp::from_nanos(1_700_000_000_123_456_789);
+        let message = |format: &str| foxglove::CompressedVideo {
+            timestamp: images::foxglove_time(at),
+            frame_id: "front".to_owned(),
+            data: Bytes::from_static(b"stream"),
+            format: format.to_owned(),
+        };
+        let read = |format| PictureKind::Video.read(7, &message(format).encode_to_vec());
+        let frame = read("h264").unwrap();
+        assert_eq!((frame.sequence, frame.captured_at, frame.encoding), (7, at, Encoding::H264));
+        assert!(matches!(read("av1"), Err(NoPicture::VideoFormat(format)) if format == "av1"));
     }
 
     #[test]

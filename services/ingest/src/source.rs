@@ -3,11 +3,15 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use crate::films::is_film;
+
 /// Where pictures come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SourceUri {
     /// A directory or a glob of pictures.
     Pictures(String),
+    /// A film: an MP4 file.
+    Film(PathBuf),
     /// A recording; `topic` picks one of several cameras.
     Recording {
         /// The MCAP file.
@@ -26,12 +30,12 @@ pub enum SourceUri {
 pub enum SourceUriError {
     /// Nothing was given.
     #[error(
-        "source is empty; name a directory or glob of pictures, a recording (FILE.mcap), sim:SCENE or zenoh:KEYEXPR"
+        "source is empty; name a directory or glob of pictures, a film (FILE.mp4), a recording (FILE.mcap), sim:SCENE or zenoh:KEYEXPR"
     )]
     Empty,
     /// A scheme nobody here serves.
     #[error(
-        "source `{uri}` has the scheme `{scheme}`, which is not supported; allowed are `mcap:FILE#topic`, `sim:SCENE?seed=N`, `zenoh:KEYEXPR`, a directory, or a glob"
+        "source `{uri}` has the scheme `{scheme}`, which is not supported; allowed are `mcap:FILE#topic`, `sim:SCENE?seed=N`, `zenoh:KEYEXPR`, a film (FILE.mp4), a directory, or a glob"
     )]
     Scheme {
         /// The text as given.
@@ -62,6 +66,7 @@ impl FromStr for SourceUri {
             _ if text.ends_with(".mcap") || text.ends_with(".mcap.active") => {
                 Ok(Self::Recording { file: text.into(), topic: None })
             }
+            _ if is_film(text) => Ok(Self::Film(text.into())),
             _ => Ok(Self::Pictures(text.to_owned())),
         }
     }
@@ -82,6 +87,7 @@ mod tests {
     fn names_are_told_apart() {
         let parse = |text: &str| text.parse::<SourceUri>();
         assert_eq!(parse("frames/*.jpg"), Ok(SourceUri::Pictures("frames/*.jpg".into())));
+        assert_eq!(parse("clips/Blocks.MP4"), Ok(SourceUri::Film("clips/Blocks.MP4".into())));
         assert_eq!(parse("sim:rink?seed=3"), Ok(SourceUri::Simulator("sim:rink?seed=3".into())));
         assert_eq!(parse("zenoh:a/b"), Ok(SourceUri::Zenoh("a/b".into())));
         assert_eq!(parse("drive.mcap"), Ok(SourceUri::Recording { file: "drive.mcap".into(), topic: None }));

@@ -38,15 +38,15 @@ Unknown is empty.
 
 A picture that cannot be read or decoded is named on stderr, has no rows, and makes the exit code 3.";
 
-/// Register landmarks in pictures and recordings
+/// Register landmarks in pictures, films and recordings
 ///
 /// Each input is a sequence, followed from its first frame to its last: a directory or a (quoted) glob of pictures in
-/// natural order, or the cameras of a recording. The result is a table with one row for each frame, landmark and
+/// natural order, a film, or the cameras of a recording. The result is a table with one row for each frame, landmark and
 /// instance.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Directories or quoted globs of pictures (JPEG, PNG), or recordings (FILE.mcap; mcap:FILE#TOPIC for one camera)
+    /// Directories or quoted globs of pictures (JPEG, PNG), films (FILE.mp4, H.264), or recordings (FILE.mcap; mcap:FILE#TOPIC for one camera)
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<String>,
 
@@ -71,8 +71,8 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = FormatName::Csv)]
     format: FormatName,
 
-    /// Write every frame with the result drawn in as a JPEG into this directory
-    #[arg(long, value_name = "DIR")]
+    /// Write every frame with the result drawn in: as a JPEG into this directory, or as a film (H.264)
+    #[arg(long, value_name = "DIR|FILE.mp4")]
     overlays: Option<PathBuf>,
 
     /// Write what each stage costs, in milliseconds of thread CPU time, as JSON
@@ -151,7 +151,7 @@ impl Args {
                 .threads
                 .or_else(|| std::thread::available_parallelism().ok())
                 .unwrap_or(NonZeroUsize::MIN),
-            overlays: self.overlays.clone().map(Overlays::into_directory).transpose().or_usage()?,
+            overlays: self.overlays.clone().map(Overlays::to).transpose().or_usage()?,
             timing: if self.stats.is_some() { Timing::On } else { Timing::Off },
         })
     }

@@ -18,8 +18,9 @@ const EXAMPLES: &str = "\
 Examples:
   waymark landmark learn f037.jpg#xywh=446,314,25,24 --id red --shape block -o red.json
   waymark landmark learn near.jpg#xywh=210,88,61,60 far.jpg#xywh=305,140,14,14 --id stop --shape octagon --size-m 0.75
+  waymark landmark learn 'drive.mp4#t=0.5&xywh=640,180,70,60' --id yellow -o yellow.json
 
-The shell may treat # as a comment only at the beginning of a word, so regions need no quotes.";
+The shell may treat # as a comment only at the beginning of a word, so regions need no quotes; & needs them.";
 
 /// Learn a landmark from one or several pictures of it
 ///
@@ -29,7 +30,7 @@ The shell may treat # as a comment only at the beginning of a word, so regions n
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
     /// Picture and region: FILE#xywh=X,Y,W,H in pixels from the top-left corner, or #xywh=percent:X,Y,W,H; a picture
-    /// without a region is the object from edge to edge
+    /// without a region is the object from edge to edge. FILE.mp4#t=SECONDS&xywh=X,Y,W,H takes the frame of a film
     #[arg(required = true, value_name = "IMAGE#xywh=X,Y,W,H")]
     regions: Vec<PictureRegion>,
 
