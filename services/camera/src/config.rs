@@ -39,7 +39,7 @@ pub struct CameraConfig {
 }
 
 /// How pictures are sent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SentEncoding {
     /// Each by itself: rendered pictures and films as JPEG, files and recordings as they are.
@@ -50,7 +50,7 @@ pub enum SentEncoding {
 }
 
 /// How video is encoded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct H264Config {
     /// Step of quantisation, 1..=51; six more halve the quality. Every picture has the same.
