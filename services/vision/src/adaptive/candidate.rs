@@ -16,6 +16,8 @@ use crate::landmark::{ColorStats, Landmark, ShapeClass};
 
 /// Fewer like pixels than this are no seed.
 const LEAST_SEED_PX: u64 = 5;
+/// Seeds that fill more of the frame than this are background.
+const LARGEST_SEED: f32 = 0.3;
 /// Parts of a sign that lettering separates lie within this many sizes of its largest part.
 const PARTS_REACH: f32 = 0.5;
 
@@ -62,10 +64,11 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// Whether `point` lies on the object or within its bounding square.
+    /// Whether `point` lies on the object or next to its middle.
     pub(crate) fn covers(&self, point: PointPx) -> bool {
-        let reach = 0.5 * self.area_px2.sqrt();
-        (self.centroid.x - point.x).abs() <= reach && (self.centroid.y - point.y).abs() <= reach
+        let near_px = 0.25 * self.area_px2.sqrt();
+        let (x, y) = (point.x - self.object.rect.x as f32, point.y - self.object.rect.y as f32);
+        self.centroid.distance_px(point) <= near_px || self.object.get(x.floor() as i32, y.floor() as i32)
     }
 }
 
@@ -104,7 +107,10 @@ impl Finder {
 }
 
 fn from_seeds(search: &Search<'_>, components: &Components, all: &mut Vec<Candidate>) {
-    let mut seeds: Vec<&Component> = components.list().iter().filter(|c| c.pixels >= LEAST_SEED_PX).collect();
+    let frame_px = search.frame.width() as f32 * search.frame.height() as f32;
+    let largest_px = (LARGEST_SEED * frame_px) as u64;
+    let of_size = |component: &&Component| (LEAST_SEED_PX..=largest_px).contains(&component.pixels);
+    let mut seeds: Vec<&Component> = components.list().iter().filter(of_size).collect();
     seeds.sort_by_key(|component| std::cmp::Reverse(component.pixels));
     let known = all.len();
     for seed in seeds.iter().take(search.limit) {
@@ -179,6 +185,8 @@ fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
     let edge = border(search, &found.mask);
     let mut candidate = measured(search, found.mask, &form, edge)?;
     candidate.score *= found.clear.sqrt();
+    // Mixed pixels all around are most of so small a sign: the fitted disc tells its middle better than they do.
+    candidate.centroid = found.centre;
     Some(candidate)
 }
 

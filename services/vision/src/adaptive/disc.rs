@@ -6,7 +6,7 @@
 use super::face::Face;
 use super::patch::Patch;
 use crate::frame::Frame;
-use crate::geometry::RectPx;
+use crate::geometry::{PointPx, RectPx};
 
 /// Radii tried, px.
 const RADII_PX: (f32, f32) = (3.0, 9.0);
@@ -52,6 +52,7 @@ impl Contrast {
 
 /// A disc that stands out.
 pub(crate) struct Found {
+    pub(crate) centre: PointPx,
     pub(crate) mask: Patch,
     /// How clearly it stands out on its weaker sides, 0..1.
     pub(crate) clear: f32,
@@ -75,15 +76,18 @@ pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> 
         }
         radius *= RADIUS_STEP * RADIUS_STEP;
     }
-    for _ in 0..MOST_STEPS {
-        let (from, merit) = (best.found?.0, best.merit);
-        best.try_around(&tints, from);
-        if best.merit <= merit {
-            break;
+    for step_px in [0.5, 0.25] {
+        for _ in 0..MOST_STEPS {
+            let (from, merit) = (best.found?.0, best.merit);
+            best.try_around(&tints, from, step_px);
+            if best.merit <= merit {
+                break;
+            }
         }
     }
     let (disc, contrast) = best.found?;
     (contrast.overall > 0.15).then(|| Found {
+        centre: PointPx::new(rect.x as f32 + disc.x, rect.y as f32 + disc.y),
         mask: disc.patch(rect),
         clear: contrast.weakest.clamp(0.0, 1.0),
         lettering: contrast.light_middle - EDGE_ALONE,
@@ -98,11 +102,11 @@ struct Best {
 }
 
 impl Best {
-    fn try_around(&mut self, tints: &Tints, disc: Disc) {
-        for scale in [1.0 / RADIUS_STEP, 1.0, RADIUS_STEP] {
+    fn try_around(&mut self, tints: &Tints, disc: Disc, step_px: f32) {
+        for scale in [1.0 / RADIUS_STEP.powf(2.0 * step_px), 1.0, RADIUS_STEP.powf(2.0 * step_px)] {
             for v in -1..=1 {
                 for u in -1..=1 {
-                    let (x, y) = (disc.x + 0.5 * u as f32, disc.y + 0.5 * v as f32);
+                    let (x, y) = (disc.x + step_px * u as f32, disc.y + step_px * v as f32);
                     self.try_disc(tints, Disc { x, y, radius: disc.radius * scale });
                 }
             }
@@ -111,7 +115,9 @@ impl Best {
 
     fn try_disc(&mut self, tints: &Tints, disc: Disc) {
         // Nothing around it can make a disc stand out more than its own tint.
-        if self.found.is_some() && MOST_MERIT * tints.inside(disc) * disc.radius.powf(0.6) <= self.merit {
+        if self.found.is_some()
+            && MOST_MERIT * (tints.inside(disc) + 0.05) * disc.radius.powf(0.6) <= self.merit
+        {
             return;
         }
         let contrast = tints.contrast(disc);
@@ -186,6 +192,7 @@ impl Tints {
         let (inner2, near2, far2) = (disc.radius.powi(2), (disc.radius + 0.7).powi(2), reach * reach);
         let (mut inside, mut inside_n) = (0.0_f32, 0.0_f32);
         let (mut middle, mut ring) = ((0.0_f32, 0.0_f32), (0.0_f32, 0.0_f32));
+        let soft2 = (disc.radius + 0.5).powi(2);
         let middle2 = inner2 * MIDDLE_RADIUS * MIDDLE_RADIUS;
         let mut around = [(0.0_f32, 0.0_f32); SECTORS];
         for y in ((disc.y - reach) as i32).max(0)..((disc.y + reach) as i32 + 1).min(self.height) {
@@ -193,9 +200,13 @@ impl Tints {
                 let (dx, dy) = (x as f32 + 0.5 - disc.x, y as f32 + 0.5 - disc.y);
                 let distance2 = dx * dx + dy * dy;
                 let (tint, light) = self.values[(y * self.width + x) as usize];
+                if distance2 <= soft2 {
+                    // Pixels on the edge count by the part of them that the disc covers.
+                    let covered = (disc.radius + 0.5 - distance2.sqrt()).clamp(0.0, 1.0);
+                    inside += covered * tint;
+                    inside_n += covered;
+                }
                 if distance2 <= inner2 {
-                    inside += tint;
-                    inside_n += 1.0;
                     let part = if distance2 <= middle2 { &mut middle } else { &mut ring };
                     *part = (part.0 + light, part.1 + 1.0);
                 } else if (near2..far2).contains(&distance2) {

@@ -15,7 +15,7 @@ const GAIN_RANGE: f32 = 1.7;
 const PALEST: f32 = 0.3;
 const DEEPEST: f32 = 1.5;
 /// How far a tint may point aside, as a part of its length and in levels.
-const TINT_SPREAD: f32 = 0.35;
+const TINT_SPREAD: f32 = 0.25;
 const TINT_NOISE: f32 = 5.0;
 /// The middle of a face reaches to this part of its radius.
 const MIDDLE_RADIUS: f32 = 0.45;

@@ -11,6 +11,13 @@ const FULL_SEARCH_GAIN: f32 = 1.45;
 /// The same while an object is followed.
 const FOLLOWED_GAIN: f32 = 1.22;
 
+/// A shade is vivid when its channels differ by this part of the largest.
+const VIVID: f32 = 0.4;
+/// Light on a face turned to it, over the most that a whole object gets.
+const MOST_LIT: f32 = 1.4;
+/// How far a lit face's colour may be off its shade's line through black, levels.
+const LIT_SPREAD: f32 = 14.0;
+
 /// The colours of a landmark's shades with more or less light on them: a slim cone around each shade's line through
 /// black.
 #[derive(Clone, Debug)]
@@ -125,6 +132,11 @@ impl Likeness {
         Coarse::new(self.cones.iter().map(Cone::bounds), self.face.as_ref().map(Face::least_differences))
     }
 
+    /// Whether a colour is a vivid shade's with more light on it than a whole object gets: a face turned to the light.
+    pub(crate) fn is_lit_face(&self, pixel: [u8; 3]) -> bool {
+        self.cones.iter().any(|cone| cone.is_lit_face(pixel.map(f32::from)))
+    }
+
     /// The face of a lettered sign; `None` of other landmarks.
     pub(crate) fn face(&self) -> Option<&Face> {
         self.face.as_ref()
@@ -146,6 +158,18 @@ impl Cone {
         let gain = self.gain_of(color);
         let off = |c: usize| (color[c] - gain * self.shade[c]).abs() / self.tolerance[c];
         Match { gain, excess: off(0).max(off(1)).max(off(2)) }
+    }
+
+    fn is_lit_face(&self, color: [f32; 3]) -> bool {
+        let (least, most) = self
+            .shade
+            .iter()
+            .fold((f32::MAX, 0.0_f32), |(low, high), &level| (low.min(level), high.max(level)));
+        let gain = (0..3).map(|c| color[c] * self.onto_shade[c]).sum::<f32>();
+        let off2 = (0..3).map(|c| (color[c] - gain * self.shade[c]).powi(2)).sum::<f32>();
+        most - least >= VIVID * most
+            && (1.0..MOST_LIT * self.gain.1).contains(&gain)
+            && off2 <= LIT_SPREAD * LIT_SPREAD
     }
 
     /// Whether a colour lies in the cone.

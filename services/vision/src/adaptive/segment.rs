@@ -10,8 +10,12 @@ use super::patch::Patch;
 use crate::frame::Frame;
 use crate::geometry::RectPx;
 
-/// How much darker or lighter than its palette the object's pixels may be.
-const SHADING: (f32, f32) = (0.82, 1.18);
+/// How much darker or lighter than its palette the object's pixels may be, and how much lighter at no cost: a face turned
+/// to the light is much lighter than the others.
+const SHADING: (f32, f32) = (0.82, 1.7);
+const FREE_LIGHT: f32 = 1.18;
+/// What a level beyond the free shading costs, levels.
+const SHADING_COST: f32 = 0.4;
 /// Colours closer than this count as one, levels.
 const RADIUS: f32 = 16.0;
 const OBJECT_COLOURS: usize = 6;
@@ -37,13 +41,13 @@ pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Pa
     let near = seed.dilated(reach);
     let own = Shaded::new(&object_colours(frame, seed));
     let others = Plain::new(&background_colours(frame, seed, &near, likeness));
+    let sure = seed.eroded(2);
     // What lies well inside the seed needs no asking: its colours are the object's.
-    let core = seed.eroded(2);
-    let edge = near.without(&core).only(|x, y| {
+    let asked = near.without(&sure).only(|x, y| {
         let color = levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32));
         own.distance2(color) < others.distance2(color)
     });
-    let mut object = edge.with(&core);
+    let mut object = asked.with(&sure);
     if size_px >= OPENING_SIZE_PX {
         object = object.opened(1);
     }
@@ -75,7 +79,8 @@ fn object_colours(frame: &Frame, seed: &Patch) -> Vec<Cluster> {
 /// Colours around the seed that are not the landmark's own.
 fn background_colours(frame: &Frame, seed: &Patch, near: &Patch, likeness: &Likeness) -> Vec<Cluster> {
     let ring = near.without(&seed.dilated(2));
-    palette(sampled(frame, &ring).filter(|&pixel| !likeness.matches(pixel)), RADIUS, BACKGROUND_COLOURS)
+    let foreign = |pixel: &[u8; 3]| !likeness.matches(*pixel) && !likeness.is_lit_face(*pixel);
+    palette(sampled(frame, &ring).filter(foreign), RADIUS, BACKGROUND_COLOURS)
 }
 
 /// Pixels of a patch, evenly thinned out where there are many.
@@ -119,18 +124,20 @@ impl Plain {
 /// A palette of the object's colours, each with more or less light on it.
 struct Shaded {
     means: [[f32; 8]; 3],
-    /// One over the squared length of each mean.
+    /// Squared length of each mean, and one over it.
+    length2: [f32; 8],
     inverse: [f32; 8],
 }
 
 impl Shaded {
     fn new(colours: &[Cluster]) -> Self {
-        let mut this = Self { means: [[FAR; 8]; 3], inverse: [0.0; 8] };
+        let mut this = Self { means: [[FAR; 8]; 3], length2: [0.0; 8], inverse: [0.0; 8] };
         for (at, cluster) in colours.iter().enumerate().take(8) {
             for (means, mean) in this.means.iter_mut().zip(cluster.mean) {
                 means[at] = mean;
             }
-            this.inverse[at] = 1.0 / cluster.mean.iter().map(|m| m * m).sum::<f32>().max(1.0);
+            this.length2[at] = cluster.mean.iter().map(|m| m * m).sum::<f32>().max(1.0);
+            this.inverse[at] = 1.0 / this.length2[at];
         }
         this
     }
@@ -145,7 +152,9 @@ impl Shaded {
             let gain = if gain > SHADING.0 { gain } else { SHADING.0 };
             let gain = if gain < SHADING.1 { gain } else { SHADING.1 };
             let (dr, dg, db) = (gain * r[at] - color[0], gain * g[at] - color[1], gain * b[at] - color[2]);
-            distances[at] = dr * dr + dg * dg + db * db;
+            let beyond = if gain > FREE_LIGHT { SHADING_COST * (gain - FREE_LIGHT) } else { 0.0 };
+            let cost = beyond * beyond * self.length2[at];
+            distances[at] = dr * dr + dg * dg + db * db + cost;
         }
         least(distances)
     }

@@ -101,8 +101,10 @@ struct UsualLook {
 
 fn usual_look(state: &LandmarkState) -> UsualLook {
     let known = state.tracks.iter().max_by_key(|track| track.sightings);
-    let area_px2 = |track: &Track| track.predictor.fixes.first().map_or(0.0, |fix| fix.area_px2);
-    UsualLook { score: known.map_or(0.0, |track| track.score), area_px2: known.map_or(0.0, area_px2) }
+    UsualLook {
+        score: known.map_or(0.0, |track| track.score),
+        area_px2: known.map_or(0.0, |track| track.whole_area_px2),
+    }
 }
 
 /// Drops objects that stayed unseen, and look-alikes beside something that looks far more like the landmark. The one

@@ -15,6 +15,8 @@ use crate::probe::{Stage, StageProbe};
 const FOLLOWED_PART: f32 = 0.35;
 /// The whole frame is searched for further objects every so many frames.
 const SEARCH_EVERY: u32 = 8;
+/// An object cut by the picture's border is gone when it shows less than this part of its area.
+const SLIVER: f32 = 0.12;
 /// Seeds looked at closely in a gate and in the whole frame.
 const SEEDS: (usize, usize) = (4, 12);
 
@@ -58,6 +60,9 @@ pub(super) fn landmark<P: StageProbe>(
         }
         return staged(probe, || conclude(scene, landmark, state, pursuits, Vec::new(), &mut tools.tracer));
     };
+    for found in pursuits.iter().filter_map(|pursuit| pursuit.found.as_ref()) {
+        further.retain(|candidate| !found.covers(candidate.centroid) && !candidate.covers(found.centroid));
+    }
     for (track, pursuit) in state.tracks.iter().zip(&mut pursuits) {
         reacquire(track, pursuit, &mut further);
     }
@@ -94,7 +99,9 @@ fn in_gate(
         others.iter().filter_map(|other| other.found.as_ref()).any(|found| found.covers(candidate.centroid))
     };
     let merit = |candidate: &Candidate| candidate.score * consistency(&prediction, candidate);
-    seen.retain(|candidate| gate.contains(candidate.centroid) && !taken(candidate));
+    // A last sliver at the picture's border is not the object any more.
+    let gone = |candidate: &Candidate| candidate.cut && candidate.area_px2 < SLIVER * track.whole_area_px2;
+    seen.retain(|candidate| gate.contains(candidate.centroid) && !taken(candidate) && !gone(candidate));
     seen.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
     pursuit.rival = seen.get(1).map_or(0.0, merit);
     pursuit.found = seen.into_iter().next().filter(|best| merit(best) >= FOLLOWED_PART * track.score);
@@ -130,8 +137,7 @@ fn anywhere(
 
 /// Takes up a lost object where the whole frame shows one that can be it.
 fn reacquire(track: &Track, pursuit: &mut Pursuit, further: &mut Vec<Candidate>) {
-    if let Some(found) = &pursuit.found {
-        further.retain(|candidate| !found.covers(candidate.centroid) && !candidate.covers(found.centroid));
+    if pursuit.found.is_some() {
         return;
     }
     let [xx, _, yy] = pursuit.prediction.covariance_px2;
@@ -146,6 +152,7 @@ fn reacquire(track: &Track, pursuit: &mut Pursuit, further: &mut Vec<Candidate>)
         (smallest..0.6 + 0.02 * lost).contains(&size)
             && off_px <= reach_px
             && candidate.score >= 0.6 * track.score
+            && !(candidate.cut && candidate.area_px2 < SLIVER * track.whole_area_px2)
     };
     if let Some(at) = further.iter().position(possible) {
         pursuit.found = Some(further.remove(at));

@@ -47,6 +47,8 @@ pub struct Track {
     pub gain: f32,
     /// Score, followed.
     pub score: f32,
+    /// Its area when it was last seen whole, px².
+    pub whole_area_px2: f32,
     /// Frames in which it was seen.
     pub sightings: u32,
     /// Frames since it was last seen.
@@ -63,7 +65,9 @@ impl LandmarkState {
     pub(super) fn begin(&mut self, predictor: Predictor, gain: f32, score: f32) -> &Track {
         let instance = self.next_instance;
         self.next_instance += 1;
-        self.tracks.push(Track { instance, predictor, gain, score, sightings: 1, misses: 0 });
+        let whole_area_px2 = predictor.fixes.first().map_or(0.0, |fix| fix.area_px2);
+        let (sightings, misses) = (1, 0);
+        self.tracks.push(Track { instance, predictor, gain, score, whole_area_px2, sightings, misses });
         &self.tracks[self.tracks.len() - 1]
     }
 }
@@ -73,8 +77,14 @@ impl Track {
     pub(super) fn follow(&mut self, found: &Candidate, fix: Fix) {
         self.misses = 0;
         self.sightings = self.sightings.saturating_add(1);
-        self.gain += FOLLOW_RATE * (found.gain - self.gain);
-        self.score += FOLLOW_RATE * (found.score - self.score);
+        // What the picture's border cuts tells little of how the whole object looks.
+        if !found.cut {
+            self.gain += FOLLOW_RATE * (found.gain - self.gain);
+            self.score += FOLLOW_RATE * (found.score - self.score);
+        }
+        if !found.cut || found.area_px2 > self.whole_area_px2 {
+            self.whole_area_px2 = found.area_px2;
+        }
         self.predictor.update(fix);
     }
 }
