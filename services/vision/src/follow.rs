@@ -23,7 +23,7 @@ use crate::landmark::{Landmark, LandmarkSet};
 use crate::outcome::{LandmarkOutcome, Miss, Outcome};
 use crate::predict::PredictionMethod;
 use crate::probe::StageProbe;
-use crate::register::{ShapeVeto, Workspace};
+use crate::register::{Request, ShapeVeto, Workspace, register_all};
 use crate::timestamp::Timestamp;
 use budget::Budget;
 
@@ -220,8 +220,13 @@ impl Follow {
         let mut budget = Budget::new(self.options.budget_px);
         let mut outcomes: Vec<Vec<LandmarkOutcome>> = vec![Vec::new(); count];
         let mut unreached = None;
+        if self.options.mode == Mode::Faithful {
+            self.register_faithful(scene, &order, &mut budget, &mut outcomes, probe);
+        }
         for at in order {
-            outcomes[at] = self.register(scene, at, &mut budget, probe);
+            if self.options.mode == Mode::Adaptive {
+                outcomes[at] = self.pursue(scene, at, &mut budget, probe);
+            }
             let skipped = outcomes[at].iter().any(|outcome| outcome.result == Err(Miss::Skipped));
             if skipped && unreached.is_none() && self.state.landmarks[at].tracks.is_empty() {
                 unreached = Some(at);
@@ -231,7 +236,31 @@ impl Follow {
         outcomes.into_iter().flatten().collect()
     }
 
-    fn register<P: StageProbe>(
+    /// All that the budget allows at once: they share passes over the frame.
+    fn register_faithful<P: StageProbe>(
+        &mut self,
+        scene: &Scene<'_>,
+        order: &[usize],
+        budget: &mut Budget,
+        outcomes: &mut [Vec<LandmarkOutcome>],
+        probe: &mut P,
+    ) {
+        let frame_px = u64::from(scene.frame.width()) * u64::from(scene.frame.height());
+        let allowed = order.iter().take_while(|_| budget.spend(frame_px).is_some()).count();
+        let (now, later) = order.split_at(allowed);
+        let Self { set, state, workspace, .. } = self;
+        for &at in later {
+            outcomes[at] = vec![report::missed(&set.landmarks[at], 0, Miss::Skipped)];
+        }
+        let request = Request { shape_veto: scene.options.shape_veto, ..Request::default() };
+        let landmarks = now.iter().map(|&at| set.landmarks[at].as_ref());
+        register_all(scene.frame, landmarks, &request, workspace, probe, |number, seen, _| {
+            let at = now[number];
+            outcomes[at] = faithful::landmark(scene, &set.landmarks[at], &mut state.landmarks[at], seen);
+        });
+    }
+
+    fn pursue<P: StageProbe>(
         &mut self,
         scene: &Scene<'_>,
         at: usize,
@@ -239,9 +268,6 @@ impl Follow {
         probe: &mut P,
     ) -> Vec<LandmarkOutcome> {
         let (landmark, state) = (&self.set.landmarks[at], &mut self.state.landmarks[at]);
-        match scene.options.mode {
-            Mode::Faithful => faithful::landmark(scene, landmark, state, budget, &mut self.workspace, probe),
-            Mode::Adaptive => pursue::landmark(scene, landmark, state, budget, &mut self.tools, probe),
-        }
+        pursue::landmark(scene, landmark, state, budget, &mut self.tools, probe)
     }
 }

@@ -166,7 +166,11 @@ impl Masker {
         let (of_rows, of_blocks) = (Mesh::of_single_rows(grid.window())?, Mesh::of_blocks(grid.window())?);
         if let Some(at) = self.shared.iter().position(|survey| survey.grid() == Some(grid)) {
             self.average(of_blocks, grid);
-            self.lanes.run(Ask { survey: &self.shared[at], shades: &self.averages, cells: &mut self.cells });
+            self.lanes.run(Ask {
+                survey: &mut self.shared[at],
+                shades: &self.averages,
+                cells: &mut self.cells,
+            });
             return Some(of_blocks);
         }
         self.average(of_rows, grid);
@@ -179,7 +183,7 @@ impl Masker {
         }
         self.average(of_blocks, grid);
         self.lanes.run(Take { survey: &mut self.survey, frame, grid, mesh: of_blocks });
-        self.lanes.run(Ask { survey: &self.survey, shades: &self.averages, cells: &mut self.cells });
+        self.lanes.run(Ask { survey: &mut self.survey, shades: &self.averages, cells: &mut self.cells });
         Some(of_blocks)
     }
 

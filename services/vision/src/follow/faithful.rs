@@ -2,35 +2,25 @@
 //! only numbers the instances and is reported as the prior.
 
 use super::Scene;
-use super::budget::Budget;
 use super::report;
 use super::state::{LandmarkState, Track};
 use crate::gate::search_gate;
 use crate::landmark::Landmark;
 use crate::outcome::{LandmarkOutcome, Miss, Prediction, Sighting};
 use crate::predict::{Fix, Predictor};
-use crate::probe::StageProbe;
-use crate::register::{Request, Workspace, register};
 
 /// A further object of the same landmark needs this part of the best one's score.
 const FURTHER_PART: f32 = 0.75;
 /// Objects unseen for so many frames are forgotten.
 const GIVE_UP_AFTER: u32 = 45;
 
-/// Registers one landmark and updates what is known of it.
-pub(super) fn landmark<P: StageProbe>(
+/// Updates what is known of one landmark by what was seen of it.
+pub(super) fn landmark(
     scene: &Scene<'_>,
     landmark: &Landmark,
     state: &mut LandmarkState,
-    budget: &mut Budget,
-    workspace: &mut Workspace,
-    probe: &mut P,
+    seen: Result<Vec<Sighting>, Miss>,
 ) -> Vec<LandmarkOutcome> {
-    if budget.spend(u64::from(scene.frame.width()) * u64::from(scene.frame.height())).is_none() {
-        return vec![report::missed(landmark, 0, Miss::Skipped)];
-    }
-    let request = Request { shape_veto: scene.options.shape_veto, ..Request::default() };
-    let seen = register(scene.frame, landmark, &request, workspace, probe);
     let miss = seen.as_ref().err().copied().unwrap_or(Miss::NoColour { best: None });
     let mut seen = seen.unwrap_or_default();
     let least = FURTHER_PART * seen.first().map_or(0.0, |best| best.score);

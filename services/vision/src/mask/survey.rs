@@ -27,6 +27,8 @@ pub(super) struct Survey {
     blocks: usize,
     rows: [Vec<u8>; 8],
     memory: Vec<u8>,
+    /// 1 for the cells whose ranges touch one shade's bounds in all channels.
+    touching: Vec<u8>,
 }
 
 /// A pass over the grid's region for a survey.
@@ -46,7 +48,7 @@ impl Work for Take<'_> {
 
 /// A question to a survey: sets the cells where a window may match one of the shades.
 pub(super) struct Ask<'a> {
-    pub(super) survey: &'a Survey,
+    pub(super) survey: &'a mut Survey,
     pub(super) shades: &'a [[Bounds<u8>; 3]],
     pub(super) cells: &'a mut Cells,
 }
@@ -95,20 +97,18 @@ impl Survey {
     }
 
     #[inline(always)]
-    fn ask(&self, shades: &[[Bounds<u8>; 3]], cells: &mut Cells) {
+    fn ask(&mut self, shades: &[[Bounds<u8>; 3]], cells: &mut Cells) {
         cells.reset(self.bands, self.blocks);
-        let count = self.bands * self.blocks;
-        let flags = &mut cells.flags()[..count];
-        for [red, green, blue] in shades {
-            let (low, high) = (
-                self.low.each_ref().map(|low| &low[..count]),
-                self.high.each_ref().map(|high| &high[..count]),
-            );
-            let touches = |channel: usize, at: usize, bounds: &Bounds<u8>| {
-                u8::from(low[channel][at] <= bounds.high) & u8::from(high[channel][at] >= bounds.low)
-            };
-            for (at, flag) in flags.iter_mut().enumerate() {
-                *flag |= touches(0, at, red) & touches(1, at, green) & touches(2, at, blue);
+        for shade in shades {
+            self.touching.clear();
+            self.touching.resize(self.bands * self.blocks, 1);
+            for ((low, high), bounds) in self.low.iter().zip(&self.high).zip(shade) {
+                for ((touching, &low), &high) in self.touching.iter_mut().zip(low).zip(high) {
+                    *touching &= u8::from(low <= bounds.high) & u8::from(high >= bounds.low);
+                }
+            }
+            for (flag, &touching) in cells.flags().iter_mut().zip(&self.touching) {
+                *flag |= touching;
             }
         }
     }
@@ -149,35 +149,28 @@ impl Survey {
     /// second sample of the block's last pixel cover the next one first.)
     #[inline(always)]
     fn note_extremes(&mut self, band: usize) {
-        for block in 0..self.blocks {
-            let start = BLOCK_BYTES * block;
-            let (pixels, after) = self.rows[0][start..start + BLOCK_BYTES + 3].split_at(BLOCK_BYTES);
-            let low = folded(pixels, after, u8::min);
-            let high = folded(pixels, after, u8::max);
-            for channel in 0..3 {
-                self.low[channel][band * self.blocks + block] = low[channel];
-                self.high[channel][band * self.blocks + block] = high[channel];
+        let (blocks, after) = (self.rows[0].as_chunks::<BLOCK_BYTES>().0, &self.rows[0][BLOCK_BYTES..]);
+        for (block, pixels) in blocks.iter().enumerate().take(self.blocks) {
+            let mut low = [u8::MAX; FOLD_BYTES];
+            let mut high = [0; FOLD_BYTES];
+            for part in pixels.as_chunks::<FOLD_BYTES>().0 {
+                for at in 0..FOLD_BYTES {
+                    low[at] = low[at].min(part[at]);
+                    high[at] = high[at].max(part[at]);
+                }
+            }
+            let next = &after[BLOCK_BYTES * block..][..3];
+            for (channel, &next) in next.iter().enumerate() {
+                let (mut least, mut most) = (next, next);
+                for at in (channel..FOLD_BYTES).step_by(3) {
+                    (least, most) = (least.min(low[at]), most.max(high[at]));
+                }
+                self.low[channel][band * self.blocks + block] = least;
+                self.high[channel][band * self.blocks + block] = most;
             }
         }
     }
 }
 
-/// `with` of all pixels, R, G, B: halves onto halves, so that every step but the last runs on whole vectors.
-#[inline(always)]
-fn folded(pixels: &[u8], after: &[u8], with: impl Fn(u8, u8) -> u8 + Copy) -> [u8; 3] {
-    let half: [u8; 48] = halved(pixels, with);
-    let quarter: [u8; 24] = halved(&half, with);
-    let eighth: [u8; 12] = halved(&quarter, with);
-    let two: [u8; 6] = halved(&eighth, with);
-    std::array::from_fn(|channel| with(with(two[channel], two[3 + channel]), after[channel]))
-}
-
-#[inline(always)]
-fn halved<const N: usize>(bytes: &[u8], with: impl Fn(u8, u8) -> u8) -> [u8; N] {
-    let (left, right) = bytes.split_at(N);
-    let mut half = [0; N];
-    for at in 0..N {
-        half[at] = with(left[at], right[at]);
-    }
-    half
-}
+/// Bytes folded onto each other: whole vectors of every instruction set, and whole pixels.
+const FOLD_BYTES: usize = 48;
