@@ -7,7 +7,7 @@ use serde_json::Value;
 use tests::workspace;
 
 /// Every crate with those of ours that it may use.
-const ALLOWED: [(&str, &[&str]); 14] = [
+const ALLOWED: [(&str, &[&str]); 15] = [
     ("vision", &[]),
     ("waymark-proto", &["vision"]),
     ("recording", &["vision", "waymark-proto"]),
@@ -20,6 +20,7 @@ const ALLOWED: [(&str, &[&str]); 14] = [
     ("leader", MEMBER),
     ("follower", MEMBER),
     ("analysis", MEMBER),
+    ("player", MEMBER),
     ("waymark", BINARY),
     ("tests", BINARY),
 ];
@@ -38,6 +39,7 @@ const BINARY: &[&str] = &[
     "leader",
     "follower",
     "analysis",
+    "player",
 ];
 
 /// What `vision` must not even reach through others: it has no wire, no runtime, no log.

@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    camera, completion, config, demo, doctor, explain, follower, landmark, leader, recording, register,
+    camera, completion, config, demo, doctor, explain, follower, landmark, leader, play, recording, register,
     router,
 };
 
@@ -34,6 +34,7 @@ pub(crate) enum Command {
     Camera(camera::Args),
     /// Publish a simulated camera; the same as `camera`, whose default source is a simulator
     Simulate(camera::Args),
+    Play(play::Args),
     Router(router::Args),
     #[command(subcommand)]
     Landmark(landmark::Command),

@@ -9,6 +9,7 @@ pub(crate) mod explain;
 pub(crate) mod follower;
 pub(crate) mod landmark;
 pub(crate) mod leader;
+pub(crate) mod play;
 pub(crate) mod recording;
 pub(crate) mod register;
 pub(crate) mod router;
@@ -26,6 +27,7 @@ pub(crate) fn run(cli: Cli) -> Result<Ending, Failure> {
         Command::Leader(args) => leader::run(&args),
         Command::Follower(args) => follower::run(&args),
         Command::Camera(args) | Command::Simulate(args) => camera::run(&args),
+        Command::Play(args) => play::run(&args),
         Command::Router(args) => router::run(&args),
         Command::Landmark(command) => landmark::run(command, console),
         Command::Recording(command) => recording::run(command, console),
