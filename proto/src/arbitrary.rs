@@ -202,12 +202,14 @@ fn predictors() -> impl Strategy<Value = Predictor> {
 }
 
 fn tracks() -> impl Strategy<Value = Track> {
-    (any::<u32>(), predictors(), 0.0f32..4.0, 0.0f32..=1.0, any::<u32>(), any::<u32>()).prop_map(
-        |(instance, predictor, gain, score, sightings, misses)| Track {
+    let followed = (0.0f32..4.0, 0.0f32..=1.0, 0.0f32..1e6);
+    (any::<u32>(), predictors(), followed, any::<u32>(), any::<u32>()).prop_map(
+        |(instance, predictor, (gain, score, whole_area_px2), sightings, misses)| Track {
             instance,
             predictor,
             gain,
             score,
+            whole_area_px2,
             sightings,
             misses,
         },

@@ -68,7 +68,7 @@ fn landmark_to_wire(state: &LandmarkState) -> v1::LandmarkTracks {
 }
 
 fn track_to_wire(track: &Track) -> v1::Track {
-    let Track { instance, predictor, gain, score, sightings, misses } = track;
+    let Track { instance, predictor, gain, score, whole_area_px2, sightings, misses } = track;
     let Predictor { method, kalman, fixes } = predictor;
     v1::Track {
         instance: *instance,
@@ -77,6 +77,7 @@ fn track_to_wire(track: &Track) -> v1::Track {
         fixes: fixes.iter().map(fix_to_wire).collect(),
         gain: *gain,
         score: *score,
+        whole_area_px2: *whole_area_px2,
         sightings: *sightings,
         misses: *misses,
     }
@@ -173,6 +174,7 @@ fn track(wire: &v1::Track) -> Result<Track, InvalidField> {
         },
         gain: not_negative("gain", wire.gain)?,
         score: fraction("score", wire.score)?,
+        whole_area_px2: not_negative("whole_area_px2", wire.whole_area_px2)?,
         sightings: wire.sightings,
         misses: wire.misses,
     })
