@@ -9,8 +9,8 @@ fn main() {
     let assembler = Command::new("nasm").arg("-v").stdout(Stdio::null()).stderr(Stdio::null()).status();
     if x86 && !assembler.is_ok_and(|status| status.success()) {
         println!(
-            "cargo::warning=nasm is missing, so H.264 is built from C++ alone, which works but takes two to three times \
-             as long for a picture; install nasm (Debian: apt-get install nasm), then: cargo clean -p openh264-sys2"
+            "cargo::warning=nasm is missing, so H.264 is built from C++ alone, which works but takes longer for each \
+             picture; install nasm (Debian: apt-get install nasm), then: cargo clean -p openh264-sys2"
         );
     }
 }
