@@ -1,7 +1,7 @@
 //! Pictures and camera calibrations as Foxglove messages.
 
 use foxglove::bytes::Bytes;
-use vision::{SizePx, Timestamp};
+use vision::{Pinhole, SizePx, Timestamp};
 
 use crate::foxglove as fox;
 
@@ -72,51 +72,32 @@ pub fn picture_captured_at(image: &fox::CompressedImage) -> Result<Timestamp, Un
     image.timestamp.as_ref().map(domain_time).ok_or(UnusablePicture::NoTimestamp)
 }
 
-/// An ideal camera: no distortion, square pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pinhole {
-    /// Size of its pictures.
-    pub size: SizePx,
-    /// Focal length in pixels.
-    pub focal_px: f64,
-    /// Column of the optical axis, corner origin.
-    pub centre_x_px: f64,
-    /// Row of the optical axis, corner origin.
-    pub centre_y_px: f64,
+/// The camera that a calibration describes, distortion left aside; `None` without size or focal length.
+#[must_use]
+pub fn pinhole_from_calibration(calibration: &fox::CameraCalibration) -> Option<Pinhole> {
+    let &[focal_px, _, centre_x_px, _, _, centre_y_px, ..] = calibration.k.as_slice() else {
+        return None;
+    };
+    let size = SizePx { width: calibration.width, height: calibration.height };
+    let usable = focal_px.is_finite() && focal_px > 0.0 && size.width > 0 && size.height > 0;
+    let centred = centre_x_px.is_finite() && centre_y_px.is_finite();
+    (usable && centred).then_some(Pinhole { size, focal_px, centre_x_px, centre_y_px })
 }
 
-impl Pinhole {
-    /// The camera that a calibration describes, distortion left aside; `None` without size or focal length.
-    #[must_use]
-    pub fn of_calibration(calibration: &fox::CameraCalibration) -> Option<Self> {
-        let &[focal_px, _, centre_x_px, _, _, centre_y_px, ..] = calibration.k.as_slice() else {
-            return None;
-        };
-        let size = SizePx { width: calibration.width, height: calibration.height };
-        let usable = focal_px.is_finite() && focal_px > 0.0 && size.width > 0 && size.height > 0;
-        (usable && centre_x_px.is_finite() && centre_y_px.is_finite()).then_some(Self {
-            size,
-            focal_px,
-            centre_x_px,
-            centre_y_px,
-        })
-    }
-
-    /// The calibration of this camera: K, R and P as `sensor_msgs/CameraInfo` defines them.
-    #[must_use]
-    pub fn calibration(&self, camera: &str, since: Timestamp) -> fox::CameraCalibration {
-        let (focal, x, y) = (self.focal_px, self.centre_x_px, self.centre_y_px);
-        fox::CameraCalibration {
-            timestamp: foxglove_time(since),
-            frame_id: camera.to_owned(),
-            width: self.size.width,
-            height: self.size.height,
-            distortion_model: "plumb_bob".to_owned(),
-            d: vec![0.0; 5],
-            k: vec![focal, 0.0, x, 0.0, focal, y, 0.0, 0.0, 1.0],
-            r: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-            p: vec![focal, 0.0, x, 0.0, 0.0, focal, y, 0.0, 0.0, 0.0, 1.0, 0.0],
-        }
+/// The calibration of a camera: K, R and P as `sensor_msgs/CameraInfo` defines them.
+#[must_use]
+pub fn calibration_from_pinhole(pinhole: &Pinhole, camera: &str, since: Timestamp) -> fox::CameraCalibration {
+    let (focal, x, y) = (pinhole.focal_px, pinhole.centre_x_px, pinhole.centre_y_px);
+    fox::CameraCalibration {
+        timestamp: foxglove_time(since),
+        frame_id: camera.to_owned(),
+        width: pinhole.size.width,
+        height: pinhole.size.height,
+        distortion_model: "plumb_bob".to_owned(),
+        d: vec![0.0; 5],
+        k: vec![focal, 0.0, x, 0.0, focal, y, 0.0, 0.0, 1.0],
+        r: vec![1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        p: vec![focal, 0.0, x, 0.0, 0.0, focal, y, 0.0, 0.0, 0.0, 1.0, 0.0],
     }
 }
 
@@ -185,8 +166,8 @@ mod tests {
     fn a_calibration_gives_back_its_camera() {
         let size = SizePx { width: 640, height: 480 };
         let camera = Pinhole { size, focal_px: 554.0, centre_x_px: 320.0, centre_y_px: 240.0 };
-        let calibration = camera.calibration("front", Timestamp::from_nanos(1));
-        assert_eq!(Pinhole::of_calibration(&calibration), Some(camera));
-        assert_eq!(Pinhole::of_calibration(&fox::CameraCalibration::default()), None);
+        let calibration = calibration_from_pinhole(&camera, "front", Timestamp::from_nanos(1));
+        assert_eq!(pinhole_from_calibration(&calibration), Some(camera));
+        assert_eq!(pinhole_from_calibration(&fox::CameraCalibration::default()), None);
     }
 }

@@ -173,7 +173,7 @@ mod tests {
     proptest! {
         #[test]
         fn every_outcome_survives_the_wire(outcome in outcomes()) {
-            let payload = registration_to_wire("front", &outcome).encode_to_vec();
+            let payload = registration_to_wire("front", &outcome, &[]).encode_to_vec();
             let wire = v1::Registration::from_payload(&payload).unwrap();
             let (camera, received) = registration_from_wire(&wire).unwrap();
             prop_assert_eq!(camera.as_str(), "front");

@@ -1,14 +1,16 @@
 //! Outcomes as messages.
 
 use vision::outcome::{Adaptation, NearestMatch, Statistic};
-use vision::{Gate, LandmarkOutcome, Miss, Outcome, PointPx, Prediction, Segment, Sighting};
+use vision::{Gate, LandmarkOutcome, Miss, Outcome, Place, PointPx, Prediction, Segment, Sighting};
 
 use super::stats::stats_to_wire;
 use crate::v1;
 
-/// The message that tells others what `camera` saw in one frame.
+/// The message that tells others what `camera` saw in one frame, and where that is; `places` are those of the outcome's
+/// entries, in their order, and may be fewer where they are not known.
 #[must_use]
-pub fn registration_to_wire(camera: &str, outcome: &Outcome) -> v1::Registration {
+pub fn registration_to_wire(camera: &str, outcome: &Outcome, places: &[Place]) -> v1::Registration {
+    let places = places.iter().copied().chain(std::iter::repeat(Place::default()));
     v1::Registration {
         camera: camera.to_owned(),
         sequence: outcome.sequence,
@@ -17,11 +19,16 @@ pub fn registration_to_wire(camera: &str, outcome: &Outcome) -> v1::Registration
         frame_height_px: outcome.frame_size.height,
         set_epoch: outcome.set_version.epoch,
         set_version: outcome.set_version.version,
-        landmarks: outcome.landmarks.iter().map(landmark_result).collect(),
+        landmarks: outcome
+            .landmarks
+            .iter()
+            .zip(places)
+            .map(|(one, place)| landmark_result(one, place))
+            .collect(),
     }
 }
 
-fn landmark_result(outcome: &LandmarkOutcome) -> v1::LandmarkResult {
+fn landmark_result(outcome: &LandmarkOutcome, place: Place) -> v1::LandmarkResult {
     use v1::landmark_result::Result as WireResult;
     v1::LandmarkResult {
         landmark: outcome.landmark.clone(),
@@ -35,8 +42,8 @@ fn landmark_result(outcome: &LandmarkOutcome) -> v1::LandmarkResult {
         gate: outcome.gate.as_ref().map(gate_to_wire),
         innovation_px: outcome.innovation_px,
         adaptation: outcome.adaptation.as_ref().map(adaptation_to_wire),
-        bearing_rad: None,
-        range_m: None,
+        bearing_rad: place.bearing_rad,
+        range_m: place.range_m,
     }
 }
 

@@ -13,8 +13,8 @@ use ingest::pictures::{OpenPicturesError, PictureFiles, ReadPictureError};
 use ingest::recorded::Damage;
 use ingest::source::{SourceUri, SourceUriError};
 use recording::RecordingError;
-use vision::LandmarkSet;
 use vision::follow::{FollowOptions, FollowState};
+use vision::{LandmarkSet, Pinhole};
 
 use films::FilmFrames;
 use pictures::PictureFrames;
@@ -89,6 +89,8 @@ pub struct InputFrame {
     pub picture: Result<EncodedFrame, FrameError>,
     /// What became of it when it was captured.
     pub live: Live,
+    /// The camera, where its calibration is known.
+    pub pinhole: Option<Pinhole>,
 }
 
 /// What a recording says of a frame.

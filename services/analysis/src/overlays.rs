@@ -74,7 +74,7 @@ impl Overlays {
 
     /// The overlays of one camera of one input, called `name`.
     #[must_use]
-    pub fn series(&self, name: &str, place: Place) -> OverlaySeries {
+    pub fn series(&self, name: &str, place: SeriesOrder) -> OverlaySeries {
         match self {
             Self::Pictures(directory) => {
                 OverlaySeries::Pictures { directory: directory.clone(), name: name.to_owned() }
@@ -82,8 +82,8 @@ impl Overlays {
             Self::Film(file) => {
                 let stem = file.file_stem().unwrap_or_default().to_string_lossy();
                 let path = match place {
-                    Place::First => file.clone(),
-                    Place::Later => file.with_file_name(format!("{stem}-{name}.mp4")),
+                    SeriesOrder::First => file.clone(),
+                    SeriesOrder::Later => file.with_file_name(format!("{stem}-{name}.mp4")),
                 };
                 OverlaySeries::Film(Box::new(FilmSeries { path, film: None }))
             }
@@ -93,7 +93,7 @@ impl Overlays {
 
 /// Whether a series has the name that was given to itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum SeriesOrder {
     /// The first camera of the only input.
     First,
     /// Any other.
@@ -212,7 +212,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let overlays = Overlays::to(directory.path().join("new/one")).unwrap();
         let mut frame = Frame::from_rgb(64, 48, vec![80; 64 * 48 * 3]).unwrap();
-        overlays.series("rink", Place::Later).write(7, &mut frame, &Outcome::default()).unwrap();
+        overlays.series("rink", SeriesOrder::Later).write(7, &mut frame, &Outcome::default()).unwrap();
         let path = directory.path().join("new/one/rink-000007.jpg");
         assert_eq!(crate::learn::read_frame(&path).unwrap().size(), frame.size());
     }
@@ -221,7 +221,7 @@ mod tests {
     fn a_film_shows_each_frame_when_it_was_captured() {
         let directory = tempfile::tempdir().unwrap();
         let overlays = Overlays::to(directory.path().join("drive.mp4")).unwrap();
-        let mut series = overlays.series("left", Place::Later);
+        let mut series = overlays.series("left", SeriesOrder::Later);
         let mut frame = Frame::from_rgb(64, 48, vec![80; 64 * 48 * 3]).unwrap();
         for (number, captured_ms) in [(1, 500), (2, 540), (3, 620)] {
             let captured_at = Timestamp::from_nanos(captured_ms * 1_000_000);

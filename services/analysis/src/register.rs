@@ -10,11 +10,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ingest::camera_decoder::CameraDecoder;
 use ingest::encoded::{EncodedFrame, Encoding};
 use vision::follow::{Follow, FollowOptions, FollowState, FrameStamp};
-use vision::{Frame, LandmarkSet, NoProbe, Outcome};
+use vision::{Frame, LandmarkSet, NoProbe, Outcome, Place, places};
 
 use crate::follow_choice::FollowChoice;
 use crate::input::{Frames, Input, InputFrame, Live};
-use crate::overlays::{OverlayError, OverlaySeries, Overlays, Place, series_name};
+use crate::overlays::{OverlayError, OverlaySeries, Overlays, SeriesOrder, series_name};
 use crate::stage_times::{FrameClock, StageTimes, thread_cpu_ns};
 
 /// Events of one input that may wait for their turn in the result; a full queue makes that input's thread wait.
@@ -56,6 +56,8 @@ pub enum Event {
         camera: Option<Arc<str>>,
         /// What was seen.
         outcome: Outcome,
+        /// Where that is: a place for each entry of the outcome.
+        places: Vec<Place>,
     },
     /// It could not be read or decoded, and is missing from the result.
     Lost(LostFrame),
@@ -182,18 +184,22 @@ struct Camera {
 impl Cameras<'_> {
     /// Looks at one frame; `None` when nobody looked at it when it was recorded either.
     fn on_frame(&mut self, input: InputFrame) -> Option<Event> {
-        let InputFrame { frame, camera, name, picture, live } = input;
+        let InputFrame { frame, camera, name, picture, live, pinhole } = input;
         let Some(plan) = self.plan(live) else {
             self.pass_over(&camera, &picture.ok()?);
             return None;
         };
+        let set = Arc::clone(&plan.set);
         let seen = picture.map_err(Into::into).and_then(|picture| self.look_at(&camera, plan, &picture));
         Some(match seen {
             Ok((mut picture, outcome)) => {
                 let drawn = self.draw(frame, &camera, &mut picture, &outcome);
                 self.pixels = picture.into_rgb();
                 match drawn {
-                    Ok(()) => Event::Registered { frame, camera, outcome },
+                    Ok(()) => {
+                        let places = places(&outcome, &set, pinhole.as_ref());
+                        Event::Registered { frame, camera, outcome, places }
+                    }
                     Err(error) => Event::NotDrawn(error),
                 }
             }
@@ -263,7 +269,8 @@ impl Cameras<'_> {
         outcome: &Outcome,
     ) -> Result<(), OverlayError> {
         let Some(overlays) = &self.job.overlays else { return Ok(()) };
-        let place = if self.only_input && self.drawn.is_empty() { Place::First } else { Place::Later };
+        let place =
+            if self.only_input && self.drawn.is_empty() { SeriesOrder::First } else { SeriesOrder::Later };
         let series = self
             .drawn
             .entry(camera.clone())

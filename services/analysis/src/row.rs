@@ -1,7 +1,7 @@
 //! One row of `register`'s result: one frame, one landmark, one instance.
 
 use serde::Serialize;
-use vision::{LandmarkOutcome, Outcome};
+use vision::{LandmarkOutcome, Outcome, Place};
 
 /// The columns, in this order; a field is empty (CSV) or null (NDJSON) when unknown, never 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,12 +59,18 @@ pub struct FrameKey<'a> {
     pub camera: Option<&'a str>,
 }
 
-/// The rows of one frame, in the outcome's order.
-pub fn rows<'a>(key: FrameKey<'a>, outcome: &'a Outcome) -> impl Iterator<Item = Row<'a>> {
-    outcome.landmarks.iter().map(move |landmark| row(key, outcome.captured_at.nanos, landmark))
+/// The rows of one frame, in the outcome's order; `places` in the same order, fewer where they are not known.
+pub fn rows<'a>(
+    key: FrameKey<'a>,
+    outcome: &'a Outcome,
+    places: &'a [Place],
+) -> impl Iterator<Item = Row<'a>> {
+    let places = places.iter().copied().chain(std::iter::repeat(Place::default()));
+    let entries = outcome.landmarks.iter().zip(places);
+    entries.map(move |(landmark, place)| row(key, outcome.captured_at.nanos, landmark, place))
 }
 
-fn row<'a>(key: FrameKey<'a>, captured_at_ns: i64, outcome: &'a LandmarkOutcome) -> Row<'a> {
+fn row<'a>(key: FrameKey<'a>, captured_at_ns: i64, outcome: &'a LandmarkOutcome, place: Place) -> Row<'a> {
     let sighting = outcome.result.as_ref().ok();
     let prediction = outcome.prediction.as_ref();
     Row {
@@ -86,7 +92,7 @@ fn row<'a>(key: FrameKey<'a>, captured_at_ns: i64, outcome: &'a LandmarkOutcome)
         predicted_area_px2: prediction.map(|prior| prior.area_px2),
         innovation_px: outcome.innovation_px,
         gain: outcome.adaptation.map(|adaptation| adaptation.gain),
-        bearing_rad: None,
-        range_m: None,
+        bearing_rad: place.bearing_rad,
+        range_m: place.range_m,
     }
 }

@@ -106,7 +106,7 @@ impl<W: Write> RowWriter<W> {
 mod tests {
     use super::*;
     use crate::row::{FrameKey, rows};
-    use vision::{Digest, LandmarkOutcome, Miss, Outcome, PointPx, Sighting, Timestamp};
+    use vision::{Digest, LandmarkOutcome, Miss, Outcome, Place, PointPx, Sighting, Timestamp};
 
     fn landmark(id: &str, result: Result<Sighting, Miss>) -> LandmarkOutcome {
         LandmarkOutcome {
@@ -134,7 +134,8 @@ mod tests {
         let (outcome, mut out) = (outcome(), Vec::new());
         let mut writer = RowWriter::new(format, &mut out).unwrap();
         let key = FrameKey { input: "a, b", frame: 2, camera: None };
-        rows(key, &outcome).for_each(|row| writer.write(&row).unwrap());
+        let places = [Place { bearing_rad: Some(-0.5), range_m: Some(2.5) }];
+        rows(key, &outcome, &places).for_each(|row| writer.write(&row).unwrap());
         writer.finish().unwrap();
         String::from_utf8(out).unwrap()
     }
@@ -144,7 +145,7 @@ mod tests {
         let text = written(RowFormat::Csv);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines[0], COLUMNS.join(","));
-        assert_eq!(lines[1], "\"a, b\",2,33333333,,red,0,measured,1.5,2.25,9.0,0.0,,0.0,,,,,,,");
+        assert_eq!(lines[1], "\"a, b\",2,33333333,,red,0,measured,1.5,2.25,9.0,0.0,,0.0,,,,,,-0.5,2.5");
         assert_eq!(lines[2], "\"a, b\",2,33333333,,blue,0,too_small,,,,,,,,,,,,,");
     }
 

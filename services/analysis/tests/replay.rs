@@ -128,7 +128,7 @@ impl Camera {
         while self.late.len() > most {
             let (outcome, state) = self.late.pop_front().unwrap();
             let (sequence, captured_at) = (outcome.sequence, outcome.captured_at);
-            let registration = registration_to_wire(CAMERA, &outcome);
+            let registration = registration_to_wire(CAMERA, &outcome, &[]);
             drive.record("/v2/camera/front/registration", sequence, &registration);
             let state = follow_state_to_wire(CAMERA, self.follow.options(), &state);
             let latch = Latch::Snapshot { key: LatchKey("front".to_owned()), of: IMAGE_TOPIC.into() };
@@ -190,7 +190,7 @@ fn replayed_as(
     let job = Job { landmarks, choice, threads: NonZeroUsize::MIN, timing: Timing::Off, overlays: None };
     let (mut numbers, mut outcomes) = (Vec::new(), Vec::new());
     let done = register(vec![(input, frames)], &job, |_, event| -> Result<(), Infallible> {
-        let Event::Registered { frame, camera, outcome } = event else { panic!("{event:?}") };
+        let Event::Registered { frame, camera, outcome, .. } = event else { panic!("{event:?}") };
         assert_eq!(camera.as_deref(), Some(CAMERA));
         numbers.push(frame);
         outcomes.push(outcome);

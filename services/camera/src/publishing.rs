@@ -4,9 +4,9 @@ use ingest::encoded::Encoding;
 use prost::Message;
 use runtime::reply::{Answer, reply};
 use simulator::TrueObject;
-use vision::Timestamp;
+use vision::{Pinhole, Timestamp};
 use waymark_proto::attachment::{Attachment, Stamper};
-use waymark_proto::images::{PictureFormat, Pinhole, foxglove_time, picture_message};
+use waymark_proto::images::{PictureFormat, calibration_from_pinhole, foxglove_time, picture_message};
 use waymark_proto::keys::{CameraStream, Id, PresenceKey, Role, VehicleKeys};
 use waymark_proto::payload::WireMessage;
 use waymark_proto::{foxglove, v1};
@@ -141,7 +141,7 @@ async fn offer_calibration(
 ) -> Result<Queryable<()>, CameraError> {
     let key = keys.camera(camera, CameraStream::Calibration);
     let since = Timestamp::from_nanos(runtime::identity::unix_time_ns());
-    let payload = pinhole.calibration(camera.as_str(), since).encode_to_vec();
+    let payload = calibration_from_pinhole(pinhole, camera.as_str(), since).encode_to_vec();
     let encoding = foxglove::CameraCalibration::encoding();
     let queryable = session
         .declare_queryable(&key)

@@ -10,8 +10,7 @@ use ingest::pictures::PictureFiles;
 use ingest::recorded::{RecordedItem, RecordedItems};
 use ingest::source::SourceUri;
 use simulator::{Simulator, TrueObject};
-use vision::Timestamp;
-use waymark_proto::images::Pinhole;
+use vision::{Pinhole, Timestamp};
 
 use crate::coder::Content;
 use crate::config::{AtEnd, CameraConfig};

@@ -1,10 +1,14 @@
-//! A camera's calibration in the recording: asked for at the start, taken whenever it changes, repeated in each file.
+//! A camera's calibration: asked for at the start, taken whenever it changes; for the places of what is seen, and for
+//! the recording, which repeats it in each file.
 
 use std::sync::Arc;
 
 use bytes::Bytes;
 use recording::{Journal, Latch, LatchKey};
+use tokio::sync::watch;
+use vision::Pinhole;
 use waymark_proto::foxglove::CameraCalibration;
+use waymark_proto::images::pinhole_from_calibration;
 use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
 use waymark_proto::payload::WireMessage;
 use zenoh::Session;
@@ -16,16 +20,21 @@ use crate::error::FollowerError;
 use crate::tap::{self, Entry, now_ns};
 use crate::topics::CameraTopics;
 
-/// Records every calibration that the camera publishes, and the one it answers with now.
+/// Records every calibration that the camera publishes, and the one it answers with now, and passes them on.
 pub(crate) async fn record(
     session: &Session,
     own: &VehicleKeys,
     camera: &Id,
     topics: CameraTopics,
     journal: Arc<Journal>,
+    pinhole: watch::Sender<Option<Pinhole>>,
 ) -> Result<Subscriber<()>, FollowerError> {
     let key = own.camera(camera, CameraStream::Calibration);
-    let log = Arc::new(move |sample: &Sample| log(sample, &topics, &journal));
+    let log = Arc::new(move |sample: &Sample| {
+        if let Some(calibration) = log(sample, &topics, &journal) {
+            pinhole.send_replace(pinhole_from_calibration(&calibration));
+        }
+    });
     let subscriber = session
         .declare_subscriber(&key)
         .callback({
@@ -47,15 +56,15 @@ pub(crate) async fn record(
     Ok(subscriber)
 }
 
-fn log(sample: &Sample, topics: &CameraTopics, journal: &Journal) {
+fn log(sample: &Sample, topics: &CameraTopics, journal: &Journal) -> Option<CameraCalibration> {
     let payload = sample.payload().to_bytes();
-    if let Err(refused) = CameraCalibration::from_payload(&payload) {
-        tracing::warn!(%refused, key = %sample.key_expr(), "calibration refused");
-        return;
-    }
+    let calibration = CameraCalibration::from_payload(&payload)
+        .inspect_err(|refused| tracing::warn!(%refused, key = %sample.key_expr(), "calibration refused"))
+        .ok()?;
     let channel = &topics.calibration;
     let captured_at_ns = i64::try_from(now_ns()).unwrap_or(i64::MAX);
     let data = Bytes::copy_from_slice(&payload);
     let latch = Latch::Repeat(LatchKey(channel.topic.clone()));
     tap::offer(journal, Entry { channel, captured_at_ns, sequence: 0, data, latch });
+    Some(calibration)
 }

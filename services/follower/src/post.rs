@@ -7,8 +7,8 @@ use ingest::video_thread::VideoThread;
 use recording::Journal;
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
-use vision::LandmarkSet;
 use vision::follow::FollowOptions;
+use vision::{LandmarkSet, Pinhole};
 use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
 use zenoh::Session;
 use zenoh::pubsub::Subscriber;
@@ -17,7 +17,7 @@ use crate::calibration;
 use crate::counters::IntakeCounters;
 use crate::error::FollowerError;
 use crate::intake::Intake;
-use crate::results::Results;
+use crate::results::{Results, Surroundings};
 use crate::station::{Losses, Station};
 use crate::topics::CameraTopics;
 use crate::web::Face;
@@ -34,6 +34,7 @@ pub(crate) struct Post {
     results: Results,
     waiting: mpsc::Receiver<Arc<Registered>>,
     station: Arc<Station>,
+    pinhole: watch::Sender<Option<Pinhole>>,
 }
 
 /// A camera that looks.
@@ -58,6 +59,8 @@ impl Post {
     ) -> Result<Self, FollowerError> {
         let (every, waiting) = mpsc::channel(WAITING_RESULTS);
         let (latest, newest) = watch::channel(None);
+        let (pinhole, known) = watch::channel(None);
+        let surroundings = Surroundings { landmarks: landmarks.clone(), pinhole: known };
         let thread = CameraThread::spawn(id.as_str(), options, landmarks, Outlets { every, latest })
             .map_err(|source| FollowerError::Thread { camera: id.to_string(), source })?;
         let video = VideoThread::spawn(id.as_str(), thread.mailbox())
@@ -67,10 +70,11 @@ impl Post {
         let (mailbox, journal_of_intake) = (thread.mailbox(), Arc::clone(journal));
         let intake =
             Intake::new(topics.clone(), journal_of_intake, mailbox, video.queue(), Arc::clone(&counters));
-        let results = Results::declare(session, own, &id, topics, options, Arc::clone(journal)).await?;
+        let results =
+            Results::declare(session, own, &id, topics, options, Arc::clone(journal), surroundings).await?;
         let losses = Losses { intake: counters, video: video.counters(), thread: thread.counters() };
         let station = Station::new(id.as_str(), thread.mailbox(), losses, newest);
-        Ok(Self { id, thread, video, intake, results, waiting, station: Arc::new(station) })
+        Ok(Self { id, thread, video, intake, results, waiting, station: Arc::new(station), pinhole })
     }
 
     pub(crate) fn station(&self) -> Arc<Station> {
@@ -84,7 +88,7 @@ impl Post {
         own: &VehicleKeys,
         face: Arc<Face>,
     ) -> Result<MannedPost, FollowerError> {
-        let Self { id, thread, video, mut intake, results, waiting, station } = self;
+        let Self { id, thread, video, mut intake, results, waiting, station, pinhole } = self;
         let (topics, journal) = (CameraTopics::new(own, &id), Arc::clone(&face.journal));
         let handing_on = tokio::spawn(results.run(waiting, Arc::clone(&station), face));
         let subscriber = session
@@ -92,7 +96,7 @@ impl Post {
             .callback_mut(move |sample| intake.accept(&sample))
             .await
             .map_err(FollowerError::zenoh("subscribing to a camera's pictures"))?;
-        let calibration = calibration::record(session, own, &id, topics, journal).await?;
+        let calibration = calibration::record(session, own, &id, topics, journal, pinhole).await?;
         Ok(MannedPost { thread, video, subscriber, _calibration: calibration, handing_on, station })
     }
 }

@@ -6,8 +6,9 @@ use bytes::Bytes;
 use ingest::camera_thread::Registered;
 use prost::Message;
 use recording::{Journal, Latch, LatchKey};
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, watch};
 use vision::follow::FollowOptions;
+use vision::{LandmarkSet, Outcome, Pinhole, Place, places};
 use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
 use waymark_proto::{annotations, convert, foxglove, v1};
 use zenoh::Session;
@@ -20,11 +21,26 @@ use crate::tap::Entry;
 use crate::topics::CameraTopics;
 use crate::web::Face;
 
+/// What places are computed with.
+pub(crate) struct Surroundings {
+    /// The landmarks in force, for their sizes.
+    pub(crate) landmarks: watch::Receiver<Arc<LandmarkSet>>,
+    /// The camera, once its calibration is known.
+    pub(crate) pinhole: watch::Receiver<Option<Pinhole>>,
+}
+
+impl Surroundings {
+    fn places(&self, outcome: &Outcome) -> Vec<Place> {
+        places(outcome, &self.landmarks.borrow(), self.pinhole.borrow().as_ref())
+    }
+}
+
 /// The way out of one camera's results.
 pub(crate) struct Results {
     topics: CameraTopics,
     options: FollowOptions,
     journal: Arc<Journal>,
+    surroundings: Surroundings,
     registrations: Outbound,
     annotations: Outbound,
 }
@@ -37,6 +53,7 @@ impl Results {
         topics: CameraTopics,
         options: FollowOptions,
         journal: Arc<Journal>,
+        surroundings: Surroundings,
     ) -> Result<Self, FollowerError> {
         let registrations = Outbound::declare::<v1::Registration>(
             session,
@@ -54,6 +71,7 @@ impl Results {
             topics,
             options,
             journal,
+            surroundings,
             registrations: registrations.await?,
             annotations: annotations.await?,
         })
@@ -75,7 +93,8 @@ impl Results {
     async fn publish(&self, camera: &str, registered: &Registered) {
         let outcome = &registered.outcome;
         let captured_at_ns = outcome.captured_at.nanos;
-        let registration = convert::registration_to_wire(camera, outcome).encode_to_vec();
+        let registration = convert::registration_to_wire(camera, outcome, &self.surroundings.places(outcome));
+        let registration = registration.encode_to_vec();
         let annotations = annotations::annotations(outcome).encode_to_vec();
         let state = convert::follow_state_to_wire(camera, &self.options, &registered.state).encode_to_vec();
         let snapshot = Latch::Snapshot {

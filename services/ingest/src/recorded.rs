@@ -8,13 +8,14 @@ use std::sync::Arc;
 
 use recording::RecordingError;
 use recording::walk::{CutChunk, Fault, RecordedMessage, Step, Walk};
-use vision::{Landmark, LandmarkSet, Outcome};
+use vision::{Landmark, LandmarkSet, Outcome, Pinhole};
 use waymark_proto::convert::{
     FollowSnapshot, InvalidField, follow_state_from_wire, landmark_from_wire, manifest_from_wire,
     registration_from_wire,
 };
+use waymark_proto::images::pinhole_from_calibration;
 use waymark_proto::payload::{RefusedPayload, WireMessage};
-use waymark_proto::{json, v1};
+use waymark_proto::{foxglove, json, v1};
 
 use crate::encoded::EncodedFrame;
 use crate::picture_message::{NoPicture, PictureKind};
@@ -33,6 +34,13 @@ pub enum RecordedItem {
         camera: Arc<str>,
         /// The picture, its sequence number cut to 32 bits as MCAP has it; or why it cannot be used.
         picture: Result<EncodedFrame, NoPicture>,
+    },
+    /// From here on, a camera is this one; `None` where its calibration does not say enough.
+    Calibration {
+        /// The camera.
+        camera: Arc<str>,
+        /// What it says.
+        pinhole: Option<Pinhole>,
     },
     /// From here on, these landmarks are in force.
     Landmarks(LandmarkSet),
@@ -146,6 +154,10 @@ impl RecordedItems {
                 let set = LandmarkSet { version: manifest.version, landmarks };
                 // A set from which something was retired stands in the attachment that follows.
                 Ok(if manifest.describes(&set) { self.adopt(set) } else { None })
+            }
+            foxglove::CameraCalibration::SCHEMA => {
+                let pinhole = pinhole_from_calibration(&decoded(topic, &message.data)?);
+                Ok(Some(RecordedItem::Calibration { camera: camera_of(topic), pinhole }))
             }
             v1::FollowState::SCHEMA => {
                 let snapshot = follow_state_from_wire(&decoded(topic, &message.data)?).map_err(field)?;

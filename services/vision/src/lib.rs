@@ -31,6 +31,7 @@ pub mod nearest;
 pub mod outcome;
 pub mod outline;
 pub mod overlay;
+pub mod pinhole;
 pub mod predict;
 pub mod probe;
 #[doc(hidden)]
@@ -50,6 +51,7 @@ pub use geometry::{PointPx, RectPx, Segment, SizePx};
 pub use landmark::{ColorStats, Digest, Landmark, LandmarkSet, SetVersion, ShapeClass, WindowPx};
 pub use learn::{LearnError, LearnOptions, learn};
 pub use outcome::{Gate, LandmarkOutcome, Miss, Outcome, Prediction, Sighting};
+pub use pinhole::{Pinhole, Place, places};
 pub use probe::{NoProbe, Stage, StageProbe};
 pub use register::{Request, ShapeVeto, Workspace, register, register_all};
 pub use timestamp::Timestamp;

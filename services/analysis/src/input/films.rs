@@ -24,7 +24,14 @@ impl Iterator for FilmFrames {
         let picture = self.film.next()?.map_err(Into::into);
         self.frame += 1;
         let name = format!("{}, frame {}", self.film.path().display(), self.frame);
-        Some(InputFrame { frame: self.frame, camera: None, name, picture, live: Live::Unknown })
+        Some(InputFrame {
+            frame: self.frame,
+            camera: None,
+            name,
+            picture,
+            live: Live::Unknown,
+            pinhole: None,
+        })
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -39,7 +39,14 @@ impl Iterator for PictureFrames {
             bytes: picture.bytes.into(),
         });
         let picture = picture.map_err(Into::into);
-        Some(InputFrame { frame: self.frame, camera: None, name, picture, live: Live::Unknown })
+        Some(InputFrame {
+            frame: self.frame,
+            camera: None,
+            name,
+            picture,
+            live: Live::Unknown,
+            pinhole: None,
+        })
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -8,7 +8,7 @@ use ingest::encoded::EncodedFrame;
 use ingest::picture_message::NoPicture;
 use ingest::recorded::{RecordedItem, RecordedItems};
 use recording::RecordingError;
-use vision::{LandmarkSet, SetVersion, Timestamp};
+use vision::{LandmarkSet, Pinhole, SetVersion, Timestamp};
 use waymark_proto::convert::FollowSnapshot;
 
 use super::{FrameError, InputError, InputFrame, Live};
@@ -25,6 +25,8 @@ struct Survey {
     registered: BTreeMap<Arc<str>, RegisteredPictures>,
     /// Every set that was in force at some time.
     sets: BTreeMap<SetVersion, Arc<LandmarkSet>>,
+    /// Calibrated cameras, as their first calibration says; a later one counts from where it stands in the file.
+    pinholes: BTreeMap<Arc<str>, Pinhole>,
     /// Where each camera stood, by the capture time of the last picture it had looked at.
     states: BTreeMap<String, BTreeMap<Timestamp, FollowSnapshot>>,
 }
@@ -73,7 +75,8 @@ impl Replay {
                 (Ok(picture), live)
             }
         };
-        InputFrame { frame, camera: Some(camera), name, picture, live }
+        let pinhole = self.survey.pinholes.get(&camera).copied();
+        InputFrame { frame, camera: Some(camera), name, picture, live, pinhole }
     }
 
     /// What became of a picture, whose sequence number is made whole where the recording tells it.
@@ -100,7 +103,7 @@ impl Replay {
 
     fn lost(&self, reason: FrameError) -> InputFrame {
         let name = self.items.path().display().to_string();
-        InputFrame { frame: 0, camera: None, name, picture: Err(reason), live: Live::Unknown }
+        InputFrame { frame: 0, camera: None, name, picture: Err(reason), live: Live::Unknown, pinhole: None }
     }
 }
 
@@ -116,7 +119,14 @@ impl Iterator for Replay {
                     }
                 }
                 Ok(RecordedItem::Landmarks(set)) => self.in_force = Some(Arc::new(set)),
-                Ok(RecordedItem::Registration { .. } | RecordedItem::State(_)) => {}
+                Ok(RecordedItem::Calibration { camera, pinhole: Some(pinhole) }) => {
+                    self.survey.pinholes.insert(camera, pinhole);
+                }
+                Ok(
+                    RecordedItem::Registration { .. }
+                    | RecordedItem::State(_)
+                    | RecordedItem::Calibration { pinhole: None, .. },
+                ) => {}
                 Ok(RecordedItem::Damage(damage)) => return Some(self.lost(damage.into())),
                 Err(error) => return Some(self.lost(error.into())),
             }
@@ -156,8 +166,11 @@ fn survey(file: &Path) -> Result<Survey, RecordingError> {
                     states.insert(last.captured_at, snapshot);
                 }
             }
-            // Told when the frames themselves are read.
-            RecordedItem::Damage(_) => {}
+            RecordedItem::Calibration { camera, pinhole: Some(pinhole) } => {
+                survey.pinholes.entry(camera).or_insert(pinhole);
+            }
+            // Damage is told when the frames themselves are read.
+            RecordedItem::Damage(_) | RecordedItem::Calibration { pinhole: None, .. } => {}
         }
     }
     Ok(survey)

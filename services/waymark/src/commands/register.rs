@@ -110,10 +110,10 @@ pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
         match event {
             Event::Lost(lost) => bar.suspend(|| tally.lose(console, &lost)),
             Event::NotDrawn(error) => return Err(error.into()),
-            Event::Registered { frame, camera, outcome } => {
+            Event::Registered { frame, camera, outcome, places } => {
                 tally.count(&outcome);
                 let key = FrameKey { input: &input.given, frame, camera: camera.as_deref() };
-                for row in rows(key, &outcome) {
+                for row in rows(key, &outcome, &places) {
                     writer.write(&row)?;
                 }
             }

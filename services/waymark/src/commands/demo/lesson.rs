@@ -15,12 +15,13 @@ const SURVEYED_FRAMES: std::ops::Range<u64> = 0..60;
 /// A box smaller than this shows too little of an object to learn it.
 const LEAST_SIDE_PX: u32 = 8;
 
-/// What is learned in a scene: the landmark's id, the objects it stands for (all whose names begin so), its shape.
-const fn subjects(scene: SceneKind) -> &'static [(&'static str, ShapeClass)] {
+/// What is learned in a scene: the landmark's id, the objects it stands for (all whose names begin so), its shape, and
+/// its width in metres where all of them have the same.
+const fn subjects(scene: SceneKind) -> &'static [(&'static str, ShapeClass, Option<f32>)] {
     match scene {
-        SceneKind::Rink => &[("red", ShapeClass::Block), ("blue", ShapeClass::Block)],
-        SceneKind::StopSign => &[("sign", ShapeClass::Octagon)],
-        SceneKind::GreenSigns => &[("sign", ShapeClass::Rectangle)],
+        SceneKind::Rink => &[("red", ShapeClass::Block, Some(0.1)), ("blue", ShapeClass::Block, Some(0.1))],
+        SceneKind::StopSign => &[("sign", ShapeClass::Octagon, Some(0.75))],
+        SceneKind::GreenSigns => &[("sign", ShapeClass::Rectangle, None)],
     }
 }
 
@@ -39,11 +40,16 @@ pub(super) fn learn_from(scene: SceneKind, seed: u64) -> anyhow::Result<Vec<Land
             (rendered.frame, rendered.truth)
         })
         .collect();
-    subjects(scene).iter().map(|&(id, shape)| landmark(id, shape, &views)).collect()
+    subjects(scene).iter().map(|&(id, shape, size_m)| landmark(id, shape, size_m, &views)).collect()
 }
 
 /// Learns one landmark from the picture in which its object is largest and hardly covered.
-fn landmark(id: &str, shape: ShapeClass, views: &[(Frame, Vec<TrueObject>)]) -> anyhow::Result<Landmark> {
+fn landmark(
+    id: &str,
+    shape: ShapeClass,
+    size_m: Option<f32>,
+    views: &[(Frame, Vec<TrueObject>)],
+) -> anyhow::Result<Landmark> {
     let seen = views.iter().flat_map(|(frame, truth)| truth.iter().map(move |object| (frame, object)));
     let whole = seen.filter(|(_, object)| object.object.starts_with(id) && object.visible > LEAST_VISIBLE);
     let best = whole.max_by(|(_, a), (_, b)| a.area_px2.total_cmp(&b.area_px2));
@@ -56,7 +62,7 @@ fn landmark(id: &str, shape: ShapeClass, views: &[(Frame, Vec<TrueObject>)]) -> 
         region.width,
         region.height
     );
-    let options = LearnOptions { id: id.to_owned(), shape, ..LearnOptions::default() };
+    let options = LearnOptions { id: id.to_owned(), shape, size_m, ..LearnOptions::default() };
     let learned = learn(&[(frame, region)], &options)?;
     Ok(Landmark { digest: landmark_digest(&learned), ..learned })
 }
