@@ -198,3 +198,37 @@ async fn it_waits_seeks_and_goes_on_when_told() {
     let last = control.status();
     assert!(!last.paused && (last.position_s - 0.5).abs() < 1e-6, "{last:?}");
 }
+
+/// Five seconds of a 1280×720 camera at 30 pictures a second, 150 kB each; how fast is printed, not judged.
+#[tokio::test(flavor = "multi_thread")]
+async fn at_full_speed_nothing_is_left_out() {
+    const PICTURES: u32 = 150;
+    let directory = tempfile::tempdir().unwrap();
+    let options_of_journal =
+        JournalOptions { free_floor_bytes: 0, ..JournalOptions::new(directory.path(), "a") };
+    let journal = Journal::start(options_of_journal).unwrap();
+    let images = channel("/a/camera/front/image", IMAGE_KEY, "foxglove.CompressedImage");
+    for number in 1..=PICTURES {
+        let log_time_ns = BEGIN_NS + u64::from(number) * 33_333_333;
+        let data: Bytes = (0..150_000_u32).map(|at| (at.wrapping_mul(number) >> 7) as u8).collect();
+        let channel = Arc::clone(&images);
+        journal.offer(Message {
+            channel,
+            log_time_ns,
+            publish_time_ns: log_time_ns,
+            sequence: number,
+            data,
+            latch: Latch::None,
+        });
+    }
+    assert_eq!(journal.finish(LONG).ledger.total().lost(), 0);
+    let file = std::fs::read_dir(directory.path()).unwrap().next().unwrap().unwrap().path();
+    let mut listener = Listener::open().await;
+    let begun = std::time::Instant::now();
+    let (_control, thread) = play(options(file), listener.session.clone()).unwrap();
+    for number in 1..=PICTURES {
+        assert_eq!(listener.next().await.attachment.sequence, i64::from(number));
+    }
+    eprintln!("{:.1} times real time", 5.0 / begun.elapsed().as_secs_f64());
+    tokio::task::spawn_blocking(|| thread.join()).await.unwrap().unwrap().unwrap();
+}
