@@ -165,3 +165,22 @@ fn more_instances_than_allowed_are_told() {
     assert_eq!(seen(&outcome).len(), 3);
     assert!(outcome.landmarks.iter().any(|row| row.result == Err(Miss::Skipped)));
 }
+
+#[test]
+fn a_block_is_found_beside_something_larger_of_its_colour_and_a_last_sliver_is_not_claimed() {
+    let mut follow = follower();
+    let wall = Block { x: 0.0, y: 0.0, width: WIDTH as f32, height: 40.0, color: RED };
+    for k in 0..40 {
+        let block = Block::square(100.0 + 3.0 * k as f32, 70.0, 22.0, RED);
+        let outcome = follow.on_frame(&picture(&[wall, block], 1.0, k), stamp(k), &mut NoProbe);
+        let found = seen(&outcome);
+        let left = WIDTH as f32 - block.x;
+        if left >= 22.0 {
+            let near = found.iter().any(|(_, sighting)| sighting.centroid.distance_px(block.centre()) < 1.0);
+            assert!(near, "frame {k}: {:?}", outcome.landmarks);
+        } else if left < 1.0 {
+            let claimed = found.iter().any(|(_, sighting)| sighting.centroid.y > 50.0);
+            assert!(!claimed, "frame {k}: {:?}", outcome.landmarks);
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! How much an object looks like the landmark: colour, texture, light, size, form and what surrounds it.
 
 use super::candidate::Search;
-use super::patch::{Patch, polygon_area_and_centroid};
+use super::patch::{Patch, enclosing_rectangle_area, polygon_area_and_centroid};
 use crate::landmark::{ColorStats, ShapeClass};
 
 /// An object of this area is as likely a speck as a landmark, px².
@@ -12,6 +12,8 @@ const PLAIN_FACE: f32 = 0.12;
 const FACE_SCALE: f32 = 0.65;
 /// Lettering of smaller signs is a smear, px².
 const RESOLVED_AREA_PX2: f32 = 110.0;
+/// A rectangle, far away and askew, fills this much of the smallest one around it.
+const FULL_RECTANGLE: f32 = 0.84;
 /// The largest window, samples of the doubled grid.
 const LARGEST_WINDOW_2X: i32 = 48;
 
@@ -21,20 +23,25 @@ pub(crate) struct Form {
     pub(crate) solidity: f32,
     /// Long over short axis of the ellipse of the same moments, at least 1.
     pub(crate) elongation: f32,
+    /// Area of the convex hull over the area of the smallest rectangle around it, 0..1: 0.79 of a disc.
+    pub(crate) fullness: f32,
     /// Evidence of lettering that its form gave, as a part of a clear face's.
     pub(crate) lettering: f32,
 }
 
 impl Form {
     /// Of a disc.
-    pub(crate) const ROUND: Self = Self { solidity: 1.0, elongation: 1.0, lettering: 0.0 };
+    pub(crate) const ROUND: Self =
+        Self { solidity: 1.0, elongation: 1.0, fullness: std::f32::consts::FRAC_PI_4, lettering: 0.0 };
 
     pub(crate) fn of(object: &Patch) -> Self {
         let area = object.count() as f32;
-        let hull_area = polygon_area_and_centroid(&object.hull()).map_or(area, |(hull_area, _)| hull_area);
+        let hull = object.hull();
+        let hull_area = polygon_area_and_centroid(&hull).map_or(area, |(hull_area, _)| hull_area);
         Self {
             solidity: (area / hull_area.max(1.0)).min(1.0),
             elongation: elongation(object),
+            fullness: (hull_area / enclosing_rectangle_area(&hull).max(1.0)).min(1.0),
             lettering: 0.0,
         }
     }
@@ -50,7 +57,9 @@ impl Form {
         };
         let too_long = (self.elongation / longest).max(1.0) - 1.0;
         let too_ragged = (least_solid - self.solidity).max(0.0);
-        (-(too_long / 0.25).powi(2) - (too_ragged / 0.15).powi(2)).exp()
+        let least_full = if shape == ShapeClass::Rectangle { FULL_RECTANGLE } else { 0.0 };
+        let too_round = (least_full - self.fullness).max(0.0);
+        (-(too_long / 0.25).powi(2) - (too_ragged / 0.15).powi(2) - (too_round / 0.06).powi(2)).exp()
     }
 }
 

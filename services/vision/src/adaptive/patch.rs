@@ -4,7 +4,7 @@ mod hull;
 mod morphology;
 mod parts;
 
-pub(crate) use hull::polygon_area_and_centroid;
+pub(crate) use hull::{enclosing_rectangle_area, polygon_area_and_centroid};
 
 use crate::bitmask::{BitMask, Run};
 use crate::geometry::RectPx;
@@ -172,6 +172,23 @@ mod tests {
         assert_eq!(hull.len(), 4);
         let (area, centre) = polygon_area_and_centroid(&hull).unwrap();
         assert_eq!((area, centre), (42.0, PointPx::new(15.5, 25.0)));
+    }
+
+    #[test]
+    fn a_disc_fills_less_of_its_rectangle_than_a_leaning_rectangle() {
+        let rect = RectPx { x: 3, y: 4, width: 60, height: 60 };
+        let leaning = Patch::from_fn(rect, |x, y| (x + y - 60).abs() < 12 && (x - y).abs() < 30);
+        let disc = Patch::from_fn(rect, |x, y| (x - 30).pow(2) + (y - 30).pow(2) < 400);
+        let fill = |patch: &Patch| {
+            let hull = patch.hull();
+            polygon_area_and_centroid(&hull).unwrap().0 / enclosing_rectangle_area(&hull)
+        };
+        assert!(
+            fill(&leaning) > 0.93 && (0.74..0.86).contains(&fill(&disc)),
+            "{} {}",
+            fill(&leaning),
+            fill(&disc)
+        );
     }
 
     #[test]

@@ -67,6 +67,22 @@ fn cross(a: (i32, i32), b: (i32, i32), c: (i32, i32)) -> i64 {
     along.0 * aside.1 - along.1 * aside.0
 }
 
+/// The area of the smallest rectangle around a convex polygon, px²; it shares a side with the polygon (Freeman and
+/// Shapira 1975).
+pub(crate) fn enclosing_rectangle_area(hull: &[PointPx]) -> f32 {
+    let along_side = |(a, b): (&PointPx, &PointPx)| {
+        let length = a.distance_px(*b).max(1e-6);
+        let (ux, uy) = ((b.x - a.x) / length, (b.y - a.y) / length);
+        let extent = |direction: (f32, f32)| {
+            let along = hull.iter().map(|p| p.x * direction.0 + p.y * direction.1);
+            let (low, high) = along.fold((f32::MAX, f32::MIN), |(low, high), at| (low.min(at), high.max(at)));
+            high - low
+        };
+        extent((ux, uy)) * extent((-uy, ux))
+    };
+    hull.iter().zip(hull.iter().cycle().skip(1)).map(along_side).fold(f32::MAX, f32::min)
+}
+
 /// The area inside a closed polygon, px² (shoelace formula), and its centroid.
 pub(crate) fn polygon_area_and_centroid(corners: &[PointPx]) -> Option<(f32, PointPx)> {
     let origin = corners.first()?;
