@@ -11,6 +11,7 @@
 mod account;
 pub mod check;
 mod chunk;
+mod copy;
 mod error;
 pub mod excerpt;
 mod file_name;
@@ -24,6 +25,7 @@ mod queue;
 pub mod reader;
 mod recorder;
 pub mod recover;
+pub mod rewrite;
 pub mod scan;
 mod status;
 mod storage;

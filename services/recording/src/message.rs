@@ -1,6 +1,6 @@
 //! What is recorded: bytes on a channel, with their times.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use bytes::Bytes;
 
@@ -22,6 +22,13 @@ pub struct ChannelSpec {
     pub key_expression: String,
     /// Schema of every message on this channel.
     pub schema: Schema,
+}
+
+impl ChannelSpec {
+    /// What the channel's record says beside topic and schema.
+    pub(crate) fn metadata(&self) -> BTreeMap<String, String> {
+        BTreeMap::from([("key_expression".to_owned(), self.key_expression.clone())])
+    }
 }
 
 /// Names a latched value: a newer message with the same key replaces it.

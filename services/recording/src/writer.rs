@@ -230,7 +230,7 @@ impl<F: RecordingFile> FileWriter<F> {
         }
         let schema: &Bytes = &spec.schema.file_descriptor_set;
         let schema_id = self.mcap.add_schema(&spec.schema.name, "protobuf", schema)?;
-        let metadata = BTreeMap::from([("key_expression".to_owned(), spec.key_expression.clone())]);
+        let metadata = spec.metadata();
         let id = self.mcap.add_channel(schema_id, &spec.topic, "protobuf", &metadata)?;
         self.chunk_bytes += schema.len();
         let nothing = Counts::default();

@@ -4,10 +4,11 @@ use std::{collections::BTreeMap, ops::Range};
 
 use super::*;
 use crate::{
-    ChunkFault, Disk, Recorder, Storage,
+    ChunkFault, Compression, Disk, Recorder, Storage,
     file_name::FileName,
     scan::Scanner,
     testing::{at_ms, channel, latched, message, names, options, read_strictly, recorder, sequences_on},
+    walk::Step,
 };
 
 /// A recording with a landmark, an image and a log topic, its chunks small.
