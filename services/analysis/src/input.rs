@@ -4,6 +4,7 @@ mod films;
 mod pictures;
 mod replay;
 
+use std::path::Path;
 use std::sync::Arc;
 
 use ingest::encoded::EncodedFrame;
@@ -106,9 +107,31 @@ pub enum Live {
         options: Option<FollowOptions>,
         /// Where the camera stood before it, where the recording says it anew.
         state: Option<FollowState>,
+        /// What the recording holds of its result; `None` when it holds results of no frame of this camera.
+        result: Option<Past>,
     },
     /// A newer frame replaced it before anyone looked.
     Dropped,
+}
+
+/// Whether all that a recorded result rests on is in the recording too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Past {
+    /// Every picture that was looked at since the last recorded state.
+    Whole,
+    /// One of these pictures is missing, so that the result cannot be had again exactly.
+    Missing,
+}
+
+impl Past {
+    /// The name used in tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Whole => "whole",
+            Self::Missing => "missing",
+        }
+    }
 }
 
 /// Why a frame of an input could not be read.
@@ -144,6 +167,15 @@ impl Input {
             source @ (SourceUri::Pictures(_) | SourceUri::Film(_) | SourceUri::Recording { .. }) => {
                 Ok(Self { given: given.to_owned(), source })
             }
+        }
+    }
+
+    /// The recording's file and the one image topic that was asked for, where this is a recording.
+    #[must_use]
+    pub fn recording(&self) -> Option<(&Path, Option<&str>)> {
+        match &self.source {
+            SourceUri::Recording { file, topic } => Some((file, topic.as_deref())),
+            _ => None,
         }
     }
 

@@ -13,7 +13,7 @@ use vision::follow::{Follow, FollowOptions, FollowState, FrameStamp};
 use vision::{Frame, LandmarkSet, NoProbe, Outcome, Place, places};
 
 use crate::follow_choice::FollowChoice;
-use crate::input::{Frames, Input, InputFrame, Live};
+use crate::input::{Frames, Input, InputFrame, Live, Past};
 use crate::overlays::{OverlayError, OverlaySeries, Overlays, SeriesOrder, series_name};
 use crate::stage_times::{FrameClock, StageTimes, thread_cpu_ns};
 
@@ -58,6 +58,8 @@ pub enum Event {
         outcome: Outcome,
         /// Where that is: a place for each entry of the outcome.
         places: Vec<Place>,
+        /// What the recording holds of the result that it had live, if it holds it.
+        recorded: Option<Past>,
     },
     /// It could not be read or decoded, and is missing from the result.
     Lost(LostFrame),
@@ -185,6 +187,10 @@ impl Cameras<'_> {
     /// Looks at one frame; `None` when nobody looked at it when it was recorded either.
     fn on_frame(&mut self, input: InputFrame) -> Option<Event> {
         let InputFrame { frame, camera, name, picture, live, pinhole } = input;
+        let recorded = match &live {
+            Live::Registered { result, .. } => *result,
+            Live::Unknown | Live::Dropped => None,
+        };
         let Some(plan) = self.plan(live) else {
             self.pass_over(&camera, &picture.ok()?);
             return None;
@@ -198,7 +204,7 @@ impl Cameras<'_> {
                 match drawn {
                     Ok(()) => {
                         let places = places(&outcome, &set, pinhole.as_ref());
-                        Event::Registered { frame, camera, outcome, places }
+                        Event::Registered { frame, camera, outcome, places, recorded }
                     }
                     Err(error) => Event::NotDrawn(error),
                 }
@@ -213,7 +219,7 @@ impl Cameras<'_> {
         let afresh = |set| Plan { set, options: choice.over(None), state: None };
         match (&self.job.landmarks, live) {
             (Some(given), _) => Some(afresh(Arc::clone(given))),
-            (None, Live::Registered { landmarks, options: recorded, state }) => {
+            (None, Live::Registered { landmarks, options: recorded, state, .. }) => {
                 let options = choice.over(recorded);
                 // Another way of following leads elsewhere; it has a past of its own.
                 Some(Plan { set: landmarks, options, state: state.filter(|_| recorded == Some(options)) })

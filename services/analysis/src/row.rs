@@ -8,8 +8,9 @@ use vision::{LandmarkOutcome, Outcome, Place};
 pub struct Row<'a> {
     /// The input as it was given.
     pub input: &'a str,
-    /// Counts from 1 within its input and camera, undecodable pictures included.
-    pub frame: u64,
+    /// Counts from 1 within its input and camera, undecodable pictures included; unknown where the picture of a
+    /// recorded result is not in the recording.
+    pub frame: Option<u64>,
     /// Capture time, ns since the Unix epoch; for plain pictures nominal: frame 1 at 0, then 30 a second.
     pub captured_at_ns: i64,
     /// The camera's id; unknown for plain pictures.
@@ -54,7 +55,7 @@ pub struct FrameKey<'a> {
     /// The input as it was given.
     pub input: &'a str,
     /// Counts from 1 within its input and camera.
-    pub frame: u64,
+    pub frame: Option<u64>,
     /// The camera's id, where there is one.
     pub camera: Option<&'a str>,
 }

@@ -6,9 +6,10 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use vision::{LandmarkOutcome, PointPx};
 
+use crate::figures::Spread;
 use crate::truth::{TrueObject, Truth};
 
 /// A measurement of the scored landmark.
@@ -32,7 +33,7 @@ impl Claim {
 }
 
 /// How well the measurements agree with the truth. Rates are parts of `frames`; figures without data are null.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// Frames that count.
     pub frames: u64,
@@ -46,6 +47,8 @@ pub struct Score {
     pub extra_per_frame: Option<f64>,
     /// Median distance of correct centres from the truth.
     pub centre_median_px: Option<f64>,
+    /// Mean of that distance.
+    pub centre_mean_px: Option<f64>,
     /// Their 95th percentile.
     pub centre_p95_px: Option<f64>,
     /// Median over correct frames of |area / true area − 1|.
@@ -118,6 +121,7 @@ impl Counts {
             miss_rate: rate(self.missed),
             extra_per_frame: rate(self.extra),
             centre_median_px: quantile(&mut self.errors_px, 0.5),
+            centre_mean_px: Spread::of(&self.errors_px).map(|spread| spread.mean),
             centre_p95_px: quantile(&mut self.errors_px, 0.95),
             area_abs_median_relative: quantile(&mut self.area_errors, 0.5),
             absent_frames: self.absent,
@@ -127,7 +131,7 @@ impl Counts {
 }
 
 /// The nearest-rank quantile; the median of an even count is the mean of its two middle values.
-fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
+pub(crate) fn quantile(values: &mut [f64], share: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let middle = values.len() / 2;
     if share == 0.5 && values.len().is_multiple_of(2) && middle > 0 {

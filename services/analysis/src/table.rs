@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::row::Row;
+use serde::Serialize;
 
 /// How rows are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,8 +34,8 @@ pub enum RowWriter<W: Write> {
     Ndjson(W),
 }
 
-/// The header of the CSV form; a test holds it against [`Row`].
-const COLUMNS: [&str; 20] = [
+/// The columns of `register`'s result; a test holds them against [`crate::row::Row`].
+pub const COLUMNS: [&str; 20] = [
     "input",
     "frame",
     "captured_at_ns",
@@ -59,15 +59,23 @@ const COLUMNS: [&str; 20] = [
 ];
 
 impl<W: Write> RowWriter<W> {
-    /// A writer of that format onto `out`.
+    /// A writer of that format onto `out`, for [`crate::row::Row`]s.
     ///
     /// # Errors
     /// When the header cannot be written.
     pub fn new(format: RowFormat, out: W) -> Result<Self, WriteRowError> {
+        Self::with_columns(format, out, &COLUMNS)
+    }
+
+    /// A writer of that format onto `out`, for rows with those columns.
+    ///
+    /// # Errors
+    /// When the header cannot be written.
+    pub fn with_columns(format: RowFormat, out: W, columns: &[&str]) -> Result<Self, WriteRowError> {
         Ok(match format {
             RowFormat::Csv => {
                 let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(out);
-                writer.write_record(COLUMNS)?;
+                writer.write_record(columns)?;
                 Self::Csv(Box::new(writer))
             }
             RowFormat::Ndjson => Self::Ndjson(out),
@@ -78,7 +86,7 @@ impl<W: Write> RowWriter<W> {
     ///
     /// # Errors
     /// When `out` refuses it.
-    pub fn write(&mut self, row: &Row<'_>) -> Result<(), WriteRowError> {
+    pub fn write(&mut self, row: &impl Serialize) -> Result<(), WriteRowError> {
         match self {
             Self::Csv(writer) => writer.serialize(row)?,
             Self::Ndjson(out) => {
@@ -133,7 +141,7 @@ mod tests {
     fn written(format: RowFormat) -> String {
         let (outcome, mut out) = (outcome(), Vec::new());
         let mut writer = RowWriter::new(format, &mut out).unwrap();
-        let key = FrameKey { input: "a, b", frame: 2, camera: None };
+        let key = FrameKey { input: "a, b", frame: Some(2), camera: None };
         let places = [Place { bearing_rad: Some(-0.5), range_m: Some(2.5) }];
         rows(key, &outcome, &places).for_each(|row| writer.write(&row).unwrap());
         writer.finish().unwrap();

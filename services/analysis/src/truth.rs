@@ -9,6 +9,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use vision::PointPx;
+use waymark_proto::v1;
+
+use crate::score::Claim;
 
 /// One object's truth over the frames of an input, by frame number.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -148,6 +151,32 @@ fn true_box(x: f32, y: f32, width: f32, height: f32) -> TrueObject {
         visible: if width > 0.0 && height > 0.0 { 1.0 } else { 0.0 },
         tolerance_px: LEAST_TOLERANCE_PX.max(0.25 * width.hypot(height)),
     }
+}
+
+/// The object of a simulated frame that a landmark stands for. One landmark may stand for many alike (`sign-1`, `sign-2`
+/// …): then for the one nearest to its best claim. Absent when the picture does not show it.
+#[must_use]
+pub fn meant_object(truth: &v1::Truth, landmark: &str, claims: &[Claim]) -> TrueObject {
+    let best = claims.iter().max_by(|a, b| a.score.total_cmp(&b.score)).map(|claim| claim.centre);
+    let is_meant = |object: &&v1::TrueObject| match object.object.strip_prefix(landmark) {
+        Some(rest) => rest.is_empty() || rest.starts_with('-'),
+        None => false,
+    };
+    let distance_px = |object: &v1::TrueObject| {
+        best.map_or(-object.area_px2 as f32, |best| best.distance_px(centre_of(object)))
+    };
+    let meant = truth.objects.iter().filter(is_meant);
+    let object = meant.min_by(|a, b| distance_px(a).total_cmp(&distance_px(b)));
+    object.map_or_else(TrueObject::default, |object| TrueObject {
+        centre: centre_of(object),
+        area_px2: Some(object.area_px2 as f32),
+        visible: object.visible as f32,
+        tolerance_px: LEAST_TOLERANCE_PX.max(0.5 * (object.area_px2 as f32).sqrt()),
+    })
+}
+
+fn centre_of(object: &v1::TrueObject) -> PointPx {
+    PointPx::new(object.x_px as f32, object.y_px as f32)
 }
 
 #[cfg(test)]

@@ -2,17 +2,22 @@
 
 #![allow(clippy::unwrap_used)] // in a test, a panic with its place is the report
 
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use analysis::again::{AgainError, AgainWriter};
+use analysis::diff::{DiffTally, changes};
 use analysis::follow_choice::FollowChoice;
-use analysis::input::Input;
+use analysis::input::{Input, Past};
+use analysis::recorded::RecordedOutcomes;
 use analysis::register::{Event, Job, Timing, register};
 use bytes::Bytes;
+use recording::check::{Verdict, check};
+use recording::reader::{MessageReader, Strictness};
 use recording::{ChannelSpec, Command, Journal, JournalOptions, Latch, LatchKey, Message, Offered, Schema};
 use vision::follow::{Follow, FollowOptions, FollowState, FrameStamp, Mode};
 use vision::frame::decode::{DecodeLimits, decode};
@@ -140,6 +145,11 @@ impl Camera {
 /// Follows every picture but each fourth, which a newer one replaces; changes the set half-way and begins a new file
 /// after each ninth picture. Results are recorded two pictures late, as a busy thread would.
 fn drive(directory: &Path) -> (Vec<PathBuf>, Vec<Outcome>) {
+    drive_losing(directory, None)
+}
+
+/// The same drive, in which the recorder loses one picture that is registered.
+fn drive_losing(directory: &Path, lost: Option<u64>) -> (Vec<PathBuf>, Vec<Outcome>) {
     let journal = Journal::start(JournalOptions::new(directory, "v2")).unwrap();
     let mut drive = Drive { journal, now_ns: 1_700_000_000_000_000_000 };
     let sets =
@@ -152,7 +162,9 @@ fn drive(directory: &Path) -> (Vec<PathBuf>, Vec<Outcome>) {
         let (sequence, bytes) = (FIRST_SEQUENCE + number, picture(number));
         let captured_at = Timestamp::from_nanos(1_700_000_000_000_000_000 + number as i64 * 33_333_333);
         let message = picture_message(PictureFormat::Jpeg, bytes.clone(), captured_at, CAMERA);
-        drive.record_as(IMAGE_TOPIC, sequence, captured_at, &message, Latch::None);
+        if lost != Some(number) {
+            drive.record_as(IMAGE_TOPIC, sequence, captured_at, &message, Latch::None);
+        }
         if number == FRAMES / 2 {
             drive.landmarks(&sets[1]);
         }
@@ -185,19 +197,94 @@ fn replayed_as(
     landmarks: Option<Arc<LandmarkSet>>,
     choice: FollowChoice,
 ) -> (Vec<u64>, Vec<Outcome>) {
+    let frames = frames_of(input, landmarks, choice).into_iter();
+    frames
+        .map(|frame| {
+            assert_ne!(frame.recorded, Some(Past::Missing));
+            (frame.number, frame.outcome)
+        })
+        .unzip()
+}
+
+struct Replayed {
+    number: u64,
+    outcome: Outcome,
+    recorded: Option<Past>,
+}
+
+fn frames_of(input: &str, landmarks: Option<Arc<LandmarkSet>>, choice: FollowChoice) -> Vec<Replayed> {
     let input = Input::parse(input).unwrap();
     let frames = input.open().unwrap();
     let job = Job { landmarks, choice, threads: NonZeroUsize::MIN, timing: Timing::Off, overlays: None };
-    let (mut numbers, mut outcomes) = (Vec::new(), Vec::new());
+    let mut replayed = Vec::new();
     let done = register(vec![(input, frames)], &job, |_, event| -> Result<(), Infallible> {
-        let Event::Registered { frame, camera, outcome, .. } = event else { panic!("{event:?}") };
+        let Event::Registered { frame, camera, outcome, recorded, .. } = event else { panic!("{event:?}") };
         assert_eq!(camera.as_deref(), Some(CAMERA));
-        numbers.push(frame);
-        outcomes.push(outcome);
+        replayed.push(Replayed { number: frame, outcome, recorded });
         Ok(())
     });
     done.unwrap();
-    (numbers, outcomes)
+    replayed
+}
+
+/// Compares a file with itself registered again.
+fn compared(file: &Path, choice: FollowChoice) -> DiffTally {
+    let mut recorded = RecordedOutcomes::open(file, None).unwrap();
+    let mut tally = DiffTally::default();
+    for frame in frames_of(file.to_str().unwrap(), None, choice) {
+        let (captured_at, sequence) = (frame.outcome.captured_at, frame.outcome.sequence);
+        let live = recorded.take(CAMERA, captured_at, sequence).unwrap().unwrap();
+        tally.count(frame.recorded.unwrap(), &changes(&live, &frame.outcome));
+    }
+    tally
+}
+
+#[test]
+fn a_comparison_finds_nothing_where_nothing_changed_and_something_where_it_did() {
+    let directory = tempfile::tempdir().unwrap();
+    let (files, _) = drive(directory.path());
+    let same = compared(&files[1], FollowChoice::default());
+    assert_eq!((same.compared, same.different, same.fields.len()), (5, 0, 0), "{same:?}");
+    let faithful = FollowChoice { mode: Some(Mode::Faithful), ..FollowChoice::default() };
+    let changed = compared(&files[1], faithful);
+    assert_eq!(changed.different, changed.compared);
+    assert!(changed.fields["gain"].changes > 0, "{changed:?}");
+}
+
+#[test]
+fn frames_behind_a_lost_picture_are_told_apart_until_the_next_state() {
+    let directory = tempfile::tempdir().unwrap();
+    let (files, _) = drive_losing(directory.path(), Some(12));
+    let tallies: Vec<DiffTally> = files.iter().map(|file| compared(file, FollowChoice::default())).collect();
+    assert_eq!(tallies.iter().map(|tally| tally.different).collect::<Vec<_>>(), [0, 0, 0]);
+    assert_eq!((tallies[0].without_past, tallies[2].without_past), (0, 0));
+    assert!(tallies[1].without_past > 0 && tallies[1].compared > 0, "{:?}", tallies[1]);
+}
+
+#[test]
+fn a_recording_written_again_has_the_old_and_the_new() {
+    let directory = tempfile::tempdir().unwrap();
+    let (files, _) = drive(directory.path());
+    let output = directory.path().join("again.mcap");
+    let mut again = AgainWriter::begin(&files[1], &output, None).unwrap();
+    let camera = Arc::from(CAMERA);
+    let frames = frames_of(files[1].to_str().unwrap(), None, FollowChoice::default());
+    for frame in &frames {
+        again.add(frame.number, &camera, &frame.outcome, &[]).unwrap();
+    }
+    again.finish(BTreeMap::new(), None).unwrap();
+    let read = |path: &Path| -> Vec<_> {
+        MessageReader::open(path, Strictness::Strict).unwrap().map(Result::unwrap).collect()
+    };
+    let (new, old): (Vec<_>, Vec<_>) =
+        read(&output).into_iter().partition(|message| message.channel.topic.ends_with("/again"));
+    assert_eq!(old, read(&files[1]));
+    assert_eq!(new.len(), 2 * frames.len());
+    assert_eq!(check(&output).unwrap().verdict(), Verdict::Fine);
+    let registered: Vec<Outcome> = frames.into_iter().map(|frame| frame.outcome).collect();
+    assert_eq!(replayed(output.to_str().unwrap(), None).1, registered);
+    let twice = AgainWriter::begin(&output, &directory.path().join("twice.mcap"), None).unwrap();
+    assert!(matches!(twice.finish(BTreeMap::new(), None), Err(AgainError::Twice { .. })));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use recording::RecordingError;
 use recording::walk::{CutChunk, Fault, RecordedMessage, Step, Walk};
-use vision::{Landmark, LandmarkSet, Outcome, Pinhole};
+use vision::{Landmark, LandmarkSet, Outcome, Pinhole, Place};
 use waymark_proto::convert::{
     FollowSnapshot, InvalidField, follow_state_from_wire, landmark_from_wire, manifest_from_wire,
     registration_from_wire,
@@ -22,6 +22,9 @@ use crate::picture_message::{NoPicture, PictureKind};
 
 /// Name of the attachment that holds the landmark set in force, as JSON.
 pub const LANDMARKS_ATTACHMENT: &str = "landmarks.json";
+
+/// What stands behind the topics of results that were found later, in the recording, and not by the follower.
+pub const AGAIN: &str = "/again";
 
 /// Something of a recording that concerns its cameras, in the order of the file.
 #[derive(Debug)]
@@ -50,6 +53,15 @@ pub enum RecordedItem {
         camera: Arc<str>,
         /// What was seen.
         outcome: Outcome,
+        /// Where that is, a place for each entry of the outcome.
+        places: Vec<Place>,
+    },
+    /// What a simulator really showed in a picture.
+    Truth {
+        /// The camera.
+        camera: Arc<str>,
+        /// What it showed.
+        truth: v1::Truth,
     },
     /// Where a camera stood behind the last picture of it that was registered.
     State(FollowSnapshot),
@@ -163,9 +175,20 @@ impl RecordedItems {
                 let snapshot = follow_state_from_wire(&decoded(topic, &message.data)?).map_err(field)?;
                 Ok(Some(RecordedItem::State(snapshot)))
             }
+            v1::Registration::SCHEMA if topic.ends_with(AGAIN) => Ok(None),
+            v1::Truth::SCHEMA => {
+                let truth = decoded(topic, &message.data)?;
+                Ok(Some(RecordedItem::Truth { camera: camera_of(topic), truth }))
+            }
             v1::Registration::SCHEMA => {
-                let (_, outcome) = registration_from_wire(&decoded(topic, &message.data)?).map_err(field)?;
-                Ok(Some(RecordedItem::Registration { camera: camera_of(topic), outcome }))
+                let wire: v1::Registration = decoded(topic, &message.data)?;
+                let (_, outcome) = registration_from_wire(&wire).map_err(field)?;
+                let place = |entry: &v1::LandmarkResult| Place {
+                    bearing_rad: entry.bearing_rad,
+                    range_m: entry.range_m,
+                };
+                let places = wire.landmarks.iter().map(place).collect();
+                Ok(Some(RecordedItem::Registration { camera: camera_of(topic), outcome, places }))
             }
             _ => Ok(None),
         }
@@ -207,8 +230,9 @@ fn decoded<M: WireMessage>(topic: &str, data: &[u8]) -> Result<M, Damage> {
     M::from_payload(data).map_err(|source| Damage::Message { topic: topic.to_owned(), source })
 }
 
-/// The camera that a topic belongs to.
-fn camera_of(topic: &str) -> Arc<str> {
+/// The camera that a topic belongs to: the id in `/{vehicle}/camera/{id}/…`, or a foreign recording's whole topic.
+#[must_use]
+pub fn camera_of(topic: &str) -> Arc<str> {
     let chunks: Vec<&str> = topic.split('/').collect();
     match chunks.as_slice() {
         ["", _vehicle, "camera", camera, _stream] => Arc::from(*camera),

@@ -27,6 +27,11 @@ impl Console {
         BufWriter::with_capacity(1 << 16, io::stdout().lock())
     }
 
+    /// The same for a writer that goes from thread to thread.
+    pub(crate) fn results_unlocked() -> BufWriter<io::Stdout> {
+        BufWriter::with_capacity(1 << 16, io::stdout())
+    }
+
     /// Something worth knowing that is not a result.
     pub(crate) fn note(self, text: &str) {
         if self == Self::Talkative {

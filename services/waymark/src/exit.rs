@@ -12,6 +12,8 @@ pub(crate) enum Ending {
     DataLost,
     /// It looked for damage, and there is some; what, its result says.
     Damaged,
+    /// It compared, and there are differences; which, its result says.
+    Different,
 }
 
 /// Why a command did not run to its end.
@@ -51,7 +53,7 @@ impl<T, E: Into<anyhow::Error>> OrUsage<T> for Result<T, E> {
 pub(crate) fn code_of(end: Result<Ending, Failure>) -> ExitCode {
     match end {
         Ok(Ending::Fine) => ExitCode::SUCCESS,
-        Ok(Ending::Damaged) => ExitCode::from(1),
+        Ok(Ending::Damaged | Ending::Different) => ExitCode::from(1),
         Ok(Ending::DataLost) => ExitCode::from(3),
         Err(Failure::Failed(error)) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(Failure::Failed(error)) => {

@@ -46,8 +46,8 @@ def messages(path: str | Path, kind: type[M]) -> Iterator[Recorded[M]]:
 
 
 def registrations(path: str | Path) -> Iterator[Recorded[Registration]]:
-    """What each frame said about every landmark."""
-    return messages(path, Registration)
+    """What each frame said about every landmark when it was driven, not what was found later (`…/again`)."""
+    return (entry for entry in messages(path, Registration) if not entry.topic.endswith("/again"))
 
 
 def landmarks(path: str | Path) -> Iterator[Recorded[Landmark]]:

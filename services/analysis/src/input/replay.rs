@@ -8,10 +8,11 @@ use ingest::encoded::EncodedFrame;
 use ingest::picture_message::NoPicture;
 use ingest::recorded::{RecordedItem, RecordedItems};
 use recording::RecordingError;
+use vision::follow::FollowState;
 use vision::{LandmarkSet, Pinhole, SetVersion, Timestamp};
 use waymark_proto::convert::FollowSnapshot;
 
-use super::{FrameError, InputError, InputFrame, Live};
+use super::{FrameError, InputError, InputFrame, Live, Past};
 
 /// Full sequence number and set of pictures, by their capture time and their sequence number cut to 32 bits.
 type RegisteredPictures = BTreeMap<(Timestamp, u32), (u64, SetVersion)>;
@@ -31,6 +32,15 @@ struct Survey {
     states: BTreeMap<String, BTreeMap<Timestamp, FollowSnapshot>>,
 }
 
+/// How far a camera's results rest on pictures that are there.
+#[derive(Debug, Default)]
+struct Footing {
+    /// The last picture that counts: looked at, or included in the last state.
+    at: Option<Timestamp>,
+    /// Whether one is missing since the last state.
+    gap: bool,
+}
+
 /// The pictures of a recording's cameras in the order of the file.
 pub struct Replay {
     items: RecordedItems,
@@ -40,6 +50,7 @@ pub struct Replay {
     in_force: Option<Arc<LandmarkSet>>,
     /// Pictures so far, by camera.
     counts: BTreeMap<Arc<str>, u64>,
+    footings: BTreeMap<Arc<str>, Footing>,
     remaining: usize,
 }
 
@@ -55,7 +66,8 @@ impl Replay {
             return Err(InputError::NoImages { given: given.to_owned(), topic, topics });
         }
         let items = RecordedItems::open(file)?;
-        Ok(Self { items, survey, topic, in_force: None, counts: BTreeMap::new(), remaining })
+        let (counts, footings) = (BTreeMap::new(), BTreeMap::new());
+        Ok(Self { items, survey, topic, in_force: None, counts, footings, remaining })
     }
 
     pub(super) fn brings_landmarks(&self) -> bool {
@@ -96,9 +108,28 @@ impl Replay {
             Some(landmarks) => {
                 let snapshot = self.survey.state_before(camera, picture.captured_at);
                 let (options, state) = snapshot.map(|snapshot| (snapshot.options, snapshot.state)).unzip();
-                Live::Registered { landmarks, options, state }
+                let result = self.past(camera, picture.captured_at, state.as_ref());
+                Live::Registered { landmarks, options, state, result }
             }
         }
+    }
+
+    /// What the result of a camera's picture rests on, `state` being one that is recorded anew before it.
+    fn past(
+        &mut self,
+        camera: &Arc<str>,
+        captured_at: Timestamp,
+        state: Option<&FollowState>,
+    ) -> Option<Past> {
+        let registered = self.survey.registered.get(camera)?;
+        let footing = self.footings.entry(Arc::clone(camera)).or_default();
+        if let Some(last) = state.and_then(|state| state.last) {
+            *footing = Footing { at: Some(last.captured_at), gap: false };
+        }
+        let before = registered.range(..(captured_at, 0)).next_back();
+        footing.gap |= before.is_some_and(|((before, _), _)| footing.at.is_none_or(|at| *before > at));
+        footing.at = Some(captured_at);
+        Some(if footing.gap { Past::Missing } else { Past::Whole })
     }
 
     fn lost(&self, reason: FrameError) -> InputFrame {
@@ -125,6 +156,7 @@ impl Iterator for Replay {
                 Ok(
                     RecordedItem::Registration { .. }
                     | RecordedItem::State(_)
+                    | RecordedItem::Truth { .. }
                     | RecordedItem::Calibration { pinhole: None, .. },
                 ) => {}
                 Ok(RecordedItem::Damage(damage)) => return Some(self.lost(damage.into())),
@@ -155,7 +187,7 @@ fn survey(file: &Path) -> Result<Survey, RecordingError> {
             RecordedItem::Landmarks(set) => {
                 survey.sets.insert(set.version, Arc::new(set));
             }
-            RecordedItem::Registration { camera, outcome } => {
+            RecordedItem::Registration { camera, outcome, .. } => {
                 let registered = survey.registered.entry(camera).or_default();
                 let frame = (outcome.captured_at, outcome.sequence as u32);
                 registered.insert(frame, (outcome.sequence, outcome.set_version));
@@ -170,7 +202,9 @@ fn survey(file: &Path) -> Result<Survey, RecordingError> {
                 survey.pinholes.entry(camera).or_insert(pinhole);
             }
             // Damage is told when the frames themselves are read.
-            RecordedItem::Damage(_) | RecordedItem::Calibration { pinhole: None, .. } => {}
+            RecordedItem::Damage(_)
+            | RecordedItem::Truth { .. }
+            | RecordedItem::Calibration { pinhole: None, .. } => {}
         }
     }
     Ok(survey)

@@ -1,7 +1,6 @@
 //! `waymark demo`: a whole convoy in one process, every part with a Zenoh session of its own over loopback TCP.
 
 mod convoy;
-mod lesson;
 mod score;
 mod summary;
 
@@ -9,6 +8,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use analysis::lesson;
 use anyhow::Context;
 use runtime::Shutdown;
 use runtime::telemetry::{LogSettings, start_logging};

@@ -1,8 +1,11 @@
 //! `waymark recording`.
 
+mod batch;
 mod check;
+mod export;
 mod info;
 mod recover;
+mod report;
 
 use clap::Subcommand;
 
@@ -15,6 +18,8 @@ pub(crate) enum Command {
     Info(info::Args),
     Check(check::Args),
     Recover(recover::Args),
+    Export(export::Args),
+    Report(report::Args),
 }
 
 pub(crate) fn run(command: Command, console: Console) -> Result<Ending, Failure> {
@@ -22,5 +27,7 @@ pub(crate) fn run(command: Command, console: Console) -> Result<Ending, Failure>
         Command::Info(args) => info::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Recover(args) => recover::run(&args, console),
+        Command::Export(args) => export::run(&args, console),
+        Command::Report(args) => report::run(&args, console),
     }
 }

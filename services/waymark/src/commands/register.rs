@@ -1,6 +1,8 @@
 //! `waymark register`.
 
+mod differences;
 mod names;
+mod results;
 mod tally;
 
 use std::num::NonZeroUsize;
@@ -12,9 +14,7 @@ use analysis::input::{Frames, Input, InputError};
 use analysis::landmark_file::read_landmark_set;
 use analysis::overlays::Overlays;
 use analysis::register::{Event, Job, Timing, register};
-use analysis::row::{FrameKey, rows};
 use analysis::stage_times::StageTimes;
-use analysis::table::RowWriter;
 use anyhow::{Context, anyhow};
 use vision::register::ShapeVeto;
 
@@ -23,6 +23,7 @@ use crate::exit::{Ending, Failure, OrUsage};
 
 pub(super) use names::ModeName;
 use names::{FormatName, PredictionName};
+use results::{Results, Seen};
 use tally::Tally;
 
 const EXAMPLES: &str = "\
@@ -30,13 +31,20 @@ Examples:
   waymark register drive --landmark red.json --landmark blue.json > drive.csv
   waymark register 'left/*.jpg' --landmark stop.json --mode faithful --require-shape --stats cost.json
   waymark register recordings/*.mcap --format ndjson > all.ndjson
+  waymark register drive.mcap --diff
+  waymark register drive.mcap --landmark better.json --diff -o drive-again.mcap
 
 Columns: input, frame (from 1 within its input and camera), captured_at_ns (Unix epoch; nominal for plain pictures, 30 a \
 second from 0), camera, landmark, instance, result (measured, or why not), x_px, y_px, area_px2, mask_area_2x, \
 shape_score, score, predicted_x_px, predicted_y_px, predicted_area_px2, innovation_px, gain, bearing_rad, range_m. \
 Unknown is empty.
 
-A picture that cannot be read or decoded is named on stderr, has no rows, and makes the exit code 3.";
+A picture that cannot be read or decoded is named on stderr, has no rows, and makes the exit code 3.
+
+With --diff the table has one row for each field that is not as it was recorded live: input, frame, captured_at_ns, \
+camera, landmark, instance, field, recorded, again, difference (a distance where the field is a place), past. The exit \
+code is 0 when nothing differs and 1 when something does. Frames that were registered live after a picture which is not \
+in the file have past `missing`: they are listed and counted, but not judged.";
 
 /// Register landmarks in pictures, films and recordings
 ///
@@ -71,6 +79,15 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = FormatName::Csv)]
     format: FormatName,
 
+    /// Compare with what the recordings say was registered live, and write what differs instead of the table
+    #[arg(long)]
+    diff: bool,
+
+    /// Write the recording again, every message untouched, with the new results beside the old ones on
+    /// `…/registration/again` and `…/annotations/again`; must not exist yet
+    #[arg(long, short, value_name = "FILE.mcap")]
+    output: Option<PathBuf>,
+
     /// Write every frame with the result drawn in: as a JPEG into this directory, or as a film (H.264)
     #[arg(long, value_name = "DIR|FILE.mp4")]
     overlays: Option<PathBuf>,
@@ -102,28 +119,28 @@ pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
     }
     let frames = inputs.iter().map(|(_, frames)| frames.size_hint().0 as u64).sum();
     let mut tally = Tally::default();
-    let mut writer =
-        RowWriter::new(args.format.into(), Console::results()).context("cannot write the table")?;
+    let mut results = Results::begin(args, &inputs, job.landmarks.clone())?;
     let bar = console.progress(frames, "registering");
     let times = register(inputs, &job, |input, event| -> anyhow::Result<()> {
         bar.inc(1);
         match event {
             Event::Lost(lost) => bar.suspend(|| tally.lose(console, &lost)),
             Event::NotDrawn(error) => return Err(error.into()),
-            Event::Registered { frame, camera, outcome, places } => {
+            Event::Registered { frame, camera, outcome, places, recorded } => {
                 tally.count(&outcome);
-                let key = FrameKey { input: &input.given, frame, camera: camera.as_deref() };
-                for row in rows(key, &outcome, &places) {
-                    writer.write(&row)?;
-                }
+                let (camera, places) = (camera.as_ref(), places.as_slice());
+                results.take(&Seen { input, frame, camera, outcome: &outcome, places, recorded })?;
             }
         }
         Ok(())
     })?;
     bar.finish_and_clear();
-    writer.finish().context("cannot write the table")?;
     args.write_stats(&times)?;
-    Ok(tally.ending(console))
+    let compared = results.finish(args, console)?;
+    Ok(match (compared, tally.ending(console)) {
+        (Ending::Different, _) => Ending::Different,
+        (_, ending) => ending,
+    })
 }
 
 fn open_inputs(given: &[String]) -> Result<Vec<(Input, Frames)>, Failure> {

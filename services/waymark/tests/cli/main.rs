@@ -9,6 +9,7 @@ mod doctor;
 mod landmarks;
 mod program;
 mod recordings;
+mod reference;
 mod register;
 mod scene;
 mod usage;

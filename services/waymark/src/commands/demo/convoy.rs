@@ -1,5 +1,6 @@
 //! The convoy itself: who is started, who connects to whom, and in which order they end.
 
+use analysis::lesson::{FOLLOWER, LEADER};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -22,7 +23,6 @@ use zenoh::Session;
 use zenoh::pubsub::Subscriber;
 
 use super::Args;
-use super::lesson::{FOLLOWER, LEADER};
 use super::score::Scorer;
 
 const FLEET: &str = "demo";

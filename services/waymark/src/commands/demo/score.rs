@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
 use analysis::score::{Claim, Score, score};
-use analysis::truth::{self, Truth};
+use analysis::truth::{self, Truth, meant_object};
 use vision::PointPx;
 use waymark_proto::v1::{self, LandmarkResult, Registration, landmark_result};
 
@@ -52,7 +52,7 @@ impl Scorer {
         }
         for (landmark, claims) in claims {
             let drive = self.landmarks.entry(landmark.to_owned()).or_default();
-            drive.add(registration.sequence, true_object(&truth, landmark, &claims), claims);
+            drive.add(registration.sequence, meant_object(&truth, landmark, &claims), claims);
         }
     }
 
@@ -99,31 +99,6 @@ fn claim(result: &LandmarkResult) -> Option<Claim> {
     let centroid = sighting.centroid?;
     let centre = PointPx::new(centroid.x_px, centroid.y_px);
     Some(Claim { centre, area_px2: sighting.area_px2, score: sighting.score })
-}
-
-/// The object that a landmark stands for. One landmark may stand for many alike (`sign-1`, `sign-2` …): then for the
-/// one nearest to its best claim. Absent when the picture does not show it.
-fn true_object(truth: &v1::Truth, landmark: &str, claims: &[Claim]) -> truth::TrueObject {
-    let best = claims.iter().max_by(|a, b| a.score.total_cmp(&b.score)).map(|claim| claim.centre);
-    let is_meant = |object: &&v1::TrueObject| match object.object.strip_prefix(landmark) {
-        Some(rest) => rest.is_empty() || rest.starts_with('-'),
-        None => false,
-    };
-    let distance_px = |object: &v1::TrueObject| {
-        best.map_or(-object.area_px2 as f32, |best| best.distance_px(centre(object)))
-    };
-    let meant = truth.objects.iter().filter(is_meant);
-    let object = meant.min_by(|a, b| distance_px(a).total_cmp(&distance_px(b)));
-    object.map_or_else(truth::TrueObject::default, |object| truth::TrueObject {
-        centre: centre(object),
-        area_px2: Some(object.area_px2 as f32),
-        visible: object.visible as f32,
-        tolerance_px: f32::max(3.0, 0.5 * (object.area_px2 as f32).sqrt()),
-    })
-}
-
-fn centre(object: &v1::TrueObject) -> PointPx {
-    PointPx::new(object.x_px as f32, object.y_px as f32)
 }
 
 #[cfg(test)]

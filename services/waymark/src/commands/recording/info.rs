@@ -1,13 +1,16 @@
 //! `waymark recording info`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, UNIX_EPOCH};
 
+use analysis::strip::strip;
+use anyhow::{Context, anyhow};
 use indicatif::{HumanBytes, HumanCount};
 use ingest::recorded::LANDMARKS_ATTACHMENT;
 use recording::info::{Info, TopicInfo};
 use serde_json::{Value, json};
 use vision::LandmarkSet;
+use vision::frame::encode::{Quality, encode_jpeg, encode_png};
 use waymark_proto::json::set_from_json;
 
 use crate::columns::Columns;
@@ -24,9 +27,21 @@ pub(crate) struct Args {
     /// Print one JSON object for each file
     #[arg(long)]
     json: bool,
+
+    /// Write a strip of small pictures, results drawn in, a row for each camera (.jpg or .png); takes one recording
+    #[arg(long, value_name = "STRIP")]
+    images: Option<PathBuf>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<Ending, Failure> {
+    if let Some(images) = &args.images {
+        let [file] = &args.files[..] else {
+            return Err(Failure::Usage(anyhow!(
+                "--images writes the strip of one recording; give exactly one"
+            )));
+        };
+        write_strip(file, images)?;
+    }
     for (number, path) in args.files.iter().enumerate() {
         let info = Info::read(path).or_usage()?;
         let text = match (args.json, number) {
@@ -37,6 +52,18 @@ pub(crate) fn run(args: &Args) -> Result<Ending, Failure> {
         Console::write_results(text.as_bytes())?;
     }
     Ok(Ending::Fine)
+}
+
+fn write_strip(file: &Path, images: &Path) -> Result<(), Failure> {
+    let frame = strip(file).or_usage()?;
+    let frame = frame
+        .ok_or_else(|| anyhow!("`{}` holds no pictures to make a strip of", file.display()))
+        .or_usage()?;
+    let is_png = images.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+    let bytes = if is_png { encode_png(&frame) } else { encode_jpeg(&frame, Quality::default()) };
+    let bytes = bytes.map_err(anyhow::Error::from)?;
+    let written = std::fs::write(images, bytes);
+    Ok(written.with_context(|| format!("cannot write `{}`", images.display()))?)
 }
 
 fn described(info: &Info) -> String {

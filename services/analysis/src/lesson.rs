@@ -1,14 +1,41 @@
-//! What the demo's leader teaches: landmarks learned from its own camera, in boxes as a person would draw them.
+//! What a simulated leader teaches: landmarks learned from its own camera, in boxes as a person would draw them.
 
-use simulator::{SceneKind, SceneOptions, Simulator, TrueObject};
-use vision::learn::{LearnOptions, learn};
+use simulator::{OptionsError, SceneKind, SceneOptions, Simulator, TrueObject};
+use vision::learn::{LearnError, LearnOptions, learn};
 use vision::{Frame, Landmark, RectPx, ShapeClass};
 use waymark_proto::digest::landmark_digest;
 
 /// The vehicle number of the leader among the scene's vehicles.
-pub(super) const LEADER: u32 = 0;
+pub const LEADER: u32 = 0;
 /// The vehicle number of the follower.
-pub(super) const FOLLOWER: u32 = 1;
+pub const FOLLOWER: u32 = 1;
+
+/// Why nothing could be learned.
+#[derive(Debug, thiserror::Error)]
+pub enum LessonError {
+    /// The scene cannot be simulated.
+    #[error(transparent)]
+    Scene(#[from] OptionsError),
+    /// The leader does not see the object.
+    #[error("`{id}` does not show in the leader's first pictures")]
+    NotSeen {
+        /// The landmark.
+        id: String,
+    },
+    /// The leader sees too little of it.
+    #[error("`{id}` is never larger than {width}×{height} pixels in the leader's first pictures")]
+    TooSmall {
+        /// The landmark.
+        id: String,
+        /// Of the best view.
+        width: u32,
+        /// Of the best view.
+        height: u32,
+    },
+    /// The best view cannot be learned from.
+    #[error(transparent)]
+    Learn(#[from] LearnError),
+}
 
 /// Frames of the leader's drive that are looked through for a good view of each object.
 const SURVEYED_FRAMES: std::ops::Range<u64> = 0..60;
@@ -30,7 +57,10 @@ const fn subjects(scene: SceneKind) -> &'static [(&'static str, ShapeClass, Opti
 const LEAST_VISIBLE: f64 = 0.9;
 
 /// Learns every subject of the scene from the leader's own pictures.
-pub(super) fn learn_from(scene: SceneKind, seed: u64) -> anyhow::Result<Vec<Landmark>> {
+///
+/// # Errors
+/// When the leader does not see enough of one of them.
+pub fn learn_from(scene: SceneKind, seed: u64) -> Result<Vec<Landmark>, LessonError> {
     let options = SceneOptions { seed, vehicle: LEADER, ..SceneOptions::new(scene) };
     let mut simulator = Simulator::new(options)?;
     let views: Vec<(Frame, Vec<TrueObject>)> = SURVEYED_FRAMES
@@ -49,19 +79,16 @@ fn landmark(
     shape: ShapeClass,
     size_m: Option<f32>,
     views: &[(Frame, Vec<TrueObject>)],
-) -> anyhow::Result<Landmark> {
+) -> Result<Landmark, LessonError> {
     let seen = views.iter().flat_map(|(frame, truth)| truth.iter().map(move |object| (frame, object)));
     let whole = seen.filter(|(_, object)| object.object.starts_with(id) && object.visible > LEAST_VISIBLE);
     let best = whole.max_by(|(_, a), (_, b)| a.area_px2.total_cmp(&b.area_px2));
-    let (frame, object) =
-        best.ok_or_else(|| anyhow::anyhow!("`{id}` does not show in the leader's first pictures"))?;
+    let (frame, object) = best.ok_or_else(|| LessonError::NotSeen { id: id.to_owned() })?;
     let region = box_around(object);
-    anyhow::ensure!(
-        region.width.min(region.height) >= LEAST_SIDE_PX,
-        "`{id}` is never larger than {}×{} pixels in the leader's first pictures",
-        region.width,
-        region.height
-    );
+    if region.width.min(region.height) < LEAST_SIDE_PX {
+        let RectPx { width, height, .. } = region;
+        return Err(LessonError::TooSmall { id: id.to_owned(), width, height });
+    }
     let options = LearnOptions { id: id.to_owned(), shape, size_m, ..LearnOptions::default() };
     let learned = learn(&[(frame, region)], &options)?;
     Ok(Landmark { digest: landmark_digest(&learned), ..learned })

@@ -1,0 +1,115 @@
+//! Markup.
+
+use std::fmt::Display;
+
+const STYLE: &str = include_str!("style.css");
+
+/// A page under construction.
+pub(super) struct Page {
+    text: String,
+}
+
+impl Page {
+    pub(super) fn new(title: &str) -> Self {
+        let title = escaped(title);
+        Self {
+            text: format!(
+                "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+                 <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+                 <title>{title}</title>\n<style>\n{STYLE}</style>\n<main>\n<h1>{title}</h1>\n"
+            ),
+        }
+    }
+
+    /// Adds markup as it is.
+    pub(super) fn raw(&mut self, markup: &str) {
+        self.text.push_str(markup);
+        self.text.push('\n');
+    }
+
+    pub(super) fn heading(&mut self, level: u8, text: &str) {
+        self.raw(&format!("<h{level}>{}</h{level}>", escaped(text)));
+    }
+
+    pub(super) fn paragraph(&mut self, text: &str) {
+        self.raw(&format!("<p>{}</p>", escaped(text)));
+    }
+
+    /// A table; cells that are numbers stand to the right.
+    pub(super) fn table(
+        &mut self,
+        caption: &str,
+        head: &[&str],
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) {
+        self.text.push_str("<div class=\"wide\"><table>\n");
+        if !caption.is_empty() {
+            self.raw(&format!("<caption>{}</caption>", escaped(caption)));
+        }
+        let names: String = head.iter().map(|name| format!("<th>{}</th>", escaped(name))).collect();
+        self.raw(&format!("<thead><tr>{names}</tr></thead><tbody>"));
+        for row in rows {
+            let cells: String = row.iter().map(|cell| td(cell)).collect();
+            self.raw(&format!("<tr>{cells}</tr>"));
+        }
+        self.raw("</tbody></table></div>");
+    }
+
+    pub(super) fn finish(mut self) -> String {
+        self.text.push_str("</main>\n</html>\n");
+        self.text
+    }
+}
+
+fn td(cell: &str) -> String {
+    let plain = cell.trim_end_matches(['%', ' ']).replace('\u{2009}', "");
+    let class = if plain == "–" || plain.parse::<f64>().is_ok() { " class=\"n\"" } else { "" };
+    format!("<td{class}>{}</td>", escaped(cell))
+}
+
+/// Text that is safe within an element and within a quoted attribute.
+pub(super) fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            other => safe.push(other),
+        }
+    }
+    safe
+}
+
+/// The value, or a dash where there is none.
+pub(super) fn or_dash(value: Option<impl Display>) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| value.to_string())
+}
+
+/// A figure with a sensible number of places.
+pub(super) fn rounded(value: f64) -> String {
+    match value.abs() {
+        size if size >= 1000.0 => format!("{value:.0}"),
+        size if size >= 100.0 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
+    }
+}
+
+pub(super) fn percent(rate: Option<f64>) -> String {
+    or_dash(rate.map(|rate| format!("{:.1} %", 100.0 * rate)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_in_a_recording_becomes_markup() {
+        let mut page = Page::new("<script>");
+        page.table("a & b", &["x"], [vec!["\"<b>\"".to_owned()], vec!["1.5 %".to_owned()]]);
+        let html = page.finish();
+        assert!(!html.contains("<script>") && !html.contains("<b>"), "{html}");
+        assert!(html.contains("a &amp; b") && html.contains("<td class=\"n\">1.5 %</td>"));
+    }
+}
