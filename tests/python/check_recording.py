@@ -21,7 +21,7 @@ from mcap_protobuf.decoder import DecoderFactory
 
 TOPIC = re.compile(
     r"/(?P<vehicle>[a-z0-9][a-z0-9_-]{0,62})/"
-    r"(camera/[a-z0-9][a-z0-9_-]{0,62}/[a-z_]+|landmark|manifest|status|log|guidance|odometry|scene|tf)|/log|/scene|/tf"
+    r"(camera/[a-z0-9][a-z0-9_-]{0,62}/[a-z_]+(/again)?|landmark|manifest|status|log|guidance|odometry|scene|tf)|/log|/scene|/tf"
 )
 NS_PER_S = 1_000_000_000
 
