@@ -19,10 +19,23 @@ pub enum RowFormat {
 pub enum WriteRowError {
     /// As CSV.
     #[error("cannot write the result")]
-    Csv(#[from] csv::Error),
+    Csv(#[source] csv::Error),
     /// As JSON, or the last of it.
     #[error("cannot write the result")]
     Write(#[from] std::io::Error),
+}
+
+impl From<csv::Error> for WriteRowError {
+    /// An error of the system stays one: whoever reads the result may have seen enough.
+    fn from(error: csv::Error) -> Self {
+        if !error.is_io_error() {
+            return Self::Csv(error);
+        }
+        match error.into_kind() {
+            csv::ErrorKind::Io(error) => Self::Write(error),
+            other => Self::Write(std::io::Error::other(format!("{other:?}"))),
+        }
+    }
 }
 
 /// Writes rows, and the header where the format has one even when no row comes.

@@ -35,21 +35,31 @@ impl Page {
         self.raw(&format!("<p>{}</p>", escaped(text)));
     }
 
-    /// A table; cells that are numbers stand to the right.
+    /// A table; columns of numbers stand to the right.
     pub(super) fn table(
         &mut self,
         caption: &str,
         head: &[&str],
         rows: impl IntoIterator<Item = Vec<String>>,
     ) {
+        let rows: Vec<Vec<String>> = rows.into_iter().collect();
+        let is_numeric = |column: usize| {
+            let mut cells = rows.iter().filter_map(|row| row.get(column));
+            !rows.is_empty() && cells.all(|cell| is_number(cell))
+        };
+        let class: Vec<&str> =
+            (0..head.len()).map(|column| if is_numeric(column) { " class=\"n\"" } else { "" }).collect();
+        let cell =
+            |tag: &str, (text, class): (&str, &&str)| format!("<{tag}{class}>{}</{tag}>", escaped(text));
         self.text.push_str("<div class=\"wide\"><table>\n");
         if !caption.is_empty() {
             self.raw(&format!("<caption>{}</caption>", escaped(caption)));
         }
-        let names: String = head.iter().map(|name| format!("<th>{}</th>", escaped(name))).collect();
+        let names: String = head.iter().copied().zip(&class).map(|named| cell("th", named)).collect();
         self.raw(&format!("<thead><tr>{names}</tr></thead><tbody>"));
-        for row in rows {
-            let cells: String = row.iter().map(|cell| td(cell)).collect();
+        for row in &rows {
+            let cells: String =
+                row.iter().map(String::as_str).zip(&class).map(|named| cell("td", named)).collect();
             self.raw(&format!("<tr>{cells}</tr>"));
         }
         self.raw("</tbody></table></div>");
@@ -61,10 +71,8 @@ impl Page {
     }
 }
 
-fn td(cell: &str) -> String {
-    let plain = cell.trim_end_matches(['%', ' ']).replace('\u{2009}', "");
-    let class = if plain == "–" || plain.parse::<f64>().is_ok() { " class=\"n\"" } else { "" };
-    format!("<td{class}>{}</td>", escaped(cell))
+fn is_number(cell: &str) -> bool {
+    cell == "–" || cell.trim_end_matches(['%', ' ']).parse::<f64>().is_ok()
 }
 
 /// Text that is safe within an element and within a quoted attribute.

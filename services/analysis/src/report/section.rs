@@ -51,7 +51,7 @@ fn landmark(page: &mut Page, figures: &LandmarkFigures, drive: &CameraDrive) -> 
     page.heading(3, &format!("Landmark {}", figures.id));
     tables::prediction_error(page, figures);
     let seen: Vec<Observation<'_>> = observations(drive, &figures.id).collect();
-    page.raw("<div class=\"grid\">");
+    page.raw("<div class=\"grid plots\">");
     let centres: Vec<(f64, f64)> = measured(&seen, |seen| (seen.centroid.x, seen.centroid.y))
         .map(|(_, (x, y))| (f64::from(x), f64::from(y)))
         .collect();

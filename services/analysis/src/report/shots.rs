@@ -74,7 +74,7 @@ impl Shots {
     pub(super) fn write(&self, page: &mut Page, camera: &str) {
         let Some(shots) = self.cameras.get(camera).filter(|shots| !shots.pictures.is_empty()) else { return };
         page.heading(4, "Four frames");
-        page.raw("<div class=\"grid\">");
+        page.raw("<div class=\"grid four\">");
         for number in &shots.evenly {
             shots.show(page, *number, &format!("Frame {number}"));
         }
