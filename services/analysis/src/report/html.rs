@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn nothing_in_a_recording_becomes_markup() {
         let mut page = Page::new("<script>");
-        page.table("a & b", &["x"], [vec!["\"<b>\"".to_owned()], vec!["1.5 %".to_owned()]]);
+        page.table("a & b", &["x", "y"], [vec!["\"<b>\"".to_owned(), "1.5 %".to_owned()]]);
         let html = page.finish();
         assert!(!html.contains("<script>") && !html.contains("<b>"), "{html}");
         assert!(html.contains("a &amp; b") && html.contains("<td class=\"n\">1.5 %</td>"));
