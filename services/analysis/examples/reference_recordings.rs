@@ -32,11 +32,9 @@ use waymark_proto::v1;
 
 /// Frame 0 is captured then: 2026-01-01T00:00:00Z.
 const START_NS: i64 = 1_767_225_600_000_000_000;
-const FRAMES: u64 = 120;
+const FRAMES: u64 = 100;
 const FRAME_RATE_HZ: f64 = 15.0;
 const SIZE: SizePx = SizePx { width: 480, height: 360 };
-/// Of the JPEG pictures: small files, blocks hardly visible.
-const QUALITY: u8 = 70;
 /// Each so many frames one is not looked at.
 const SKIPPED: u64 = 11;
 // From capture to receipt, and from there to the result.
@@ -124,7 +122,7 @@ impl Drives {
         let captured_at = Timestamp::from_nanos(START_NS + rendered.captured_offset_ns);
         let received_at_ns = captured_at.nanos + TRANSIT_NS;
         let stamp = Stamp { sequence: index + 1, captured_at, received_at_ns };
-        let jpeg = encode_jpeg(&rendered.frame, Quality::new(QUALITY)?)?;
+        let jpeg = encode_jpeg(&rendered.frame, Quality::default())?;
         let picture = picture_message(PictureFormat::Jpeg, jpeg.clone().into(), captured_at, "front");
         self.store(IMAGE_TOPIC, stamp, &picture, Latch::None);
         let truth = v1::Truth {

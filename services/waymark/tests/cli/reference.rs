@@ -81,7 +81,7 @@ fn pictures_are_exported_as_recorded_and_drawn() {
     waymark(["recording", "export", text(&rink), "--frames", text(&frames), "--overlays", text(&drawn)])
         .ended(0);
     let count = |directory: &Path| std::fs::read_dir(directory).unwrap().count();
-    assert_eq!((count(&frames), count(&drawn)), (120, 110));
+    assert_eq!((count(&frames), count(&drawn)), (100, 91));
     assert!(frames.join("rink.mcap-front-000001.jpg").exists());
     let strip = directory.path().join("strip.png");
     waymark(["recording", "info", text(&rink), "--images", text(&strip)]).ended(0);
