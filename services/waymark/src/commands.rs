@@ -1,5 +1,6 @@
 //! One file a command: its arguments, and what it does with them.
 
+mod batch;
 pub(crate) mod camera;
 pub(crate) mod completion;
 pub(crate) mod config;

@@ -1,6 +1,5 @@
 //! `waymark recording`.
 
-mod batch;
 mod check;
 mod export;
 mod info;

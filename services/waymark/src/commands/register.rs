@@ -2,6 +2,7 @@
 
 mod differences;
 mod names;
+mod per_input;
 mod results;
 mod tally;
 
@@ -23,6 +24,7 @@ use crate::exit::{Ending, Failure, OrUsage};
 
 pub(super) use names::ModeName;
 use names::{FormatName, PredictionName};
+use per_input::PerInput;
 use results::{Results, Seen};
 use tally::Tally;
 
@@ -31,6 +33,7 @@ Examples:
   waymark register drive --landmark red.json --landmark blue.json > drive.csv
   waymark register 'left/*.jpg' --landmark stop.json --mode faithful --require-shape --stats cost.json
   waymark register recordings/*.mcap --format ndjson > all.ndjson
+  waymark register recordings/*.mcap --into tables
   waymark register drive.mcap --diff
   waymark register drive.mcap --landmark better.json --diff -o drive-again.mcap
 
@@ -79,6 +82,11 @@ pub(crate) struct Args {
     #[arg(long, value_enum, default_value_t = FormatName::Csv)]
     format: FormatName,
 
+    /// Write a table for each input into this directory instead; one that is newer than its recording is kept, so that
+    /// an interrupted run goes on where it was when it is repeated
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["diff", "output"])]
+    into: Option<PathBuf>,
+
     /// Compare with what the recordings say was registered live, and write what differs instead of the table
     #[arg(long)]
     diff: bool,
@@ -103,7 +111,16 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
     let job = args.job()?;
-    let inputs = open_inputs(&args.inputs)?;
+    let tables =
+        args.into.as_ref().map(|into| PerInput::begin(into, &args.inputs, args.format)).transpose()?;
+    let due: Vec<String> = match &tables {
+        Some(tables) => args.inputs.iter().filter(|given| tables.is_due(given)).cloned().collect(),
+        None => args.inputs.clone(),
+    };
+    if due.len() < args.inputs.len() {
+        console.note(&format!("{} tables were there already", args.inputs.len() - due.len()));
+    }
+    let inputs = open_inputs(&due)?;
     if let Some((input, _)) =
         inputs.iter().find(|(_, frames)| job.landmarks.is_none() && !frames.brings_landmarks())
     {
@@ -112,14 +129,14 @@ pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
             input.given
         )));
     }
-    if args.inputs.len() > 1 && inputs.iter().all(|(_, frames)| frames.size_hint().0 == 1) {
+    if inputs.len() > 1 && inputs.iter().all(|(_, frames)| frames.size_hint().0 == 1) {
         console.note(
             "note: every input is one picture; quote a glob to have its pictures followed as one sequence",
         );
     }
     let frames = inputs.iter().map(|(_, frames)| frames.size_hint().0 as u64).sum();
     let mut tally = Tally::default();
-    let mut results = Results::begin(args, &inputs, job.landmarks.clone())?;
+    let mut results = Results::begin(args, tables, &inputs, job.landmarks.clone())?;
     let bar = console.progress(frames, "registering");
     let times = register(inputs, &job, |input, event| -> anyhow::Result<()> {
         bar.inc(1);

@@ -107,3 +107,18 @@ fn reports_of_many_recordings_have_one_summary() {
     assert_eq!(made_at("rink.html"), before, "it was there already");
     waymark(["recording", "report", text(&glob)]).ended(2);
 }
+
+#[test]
+fn tables_of_many_inputs_are_kept_when_they_are_there() {
+    let directory = tempfile::tempdir().unwrap();
+    let (rink, stop_sign) = (rink(), rink().with_file_name("stop-sign.mcap"));
+    let into = ["--into", text(directory.path())];
+    let both = || waymark([&["register", text(&rink), text(&stop_sign)], &into[..]].concat()).ended(0);
+    assert_eq!(both().stdout, "");
+    let csv = std::fs::read_to_string(directory.path().join("rink.csv")).unwrap();
+    assert_eq!(csv, waymark(["register", text(&rink)]).ended(0).stdout);
+    std::fs::remove_file(directory.path().join("stop-sign.csv")).unwrap();
+    both().telling("1 tables were there already");
+    assert!(directory.path().join("stop-sign.csv").exists());
+    waymark([&["register", text(&rink), text(&rink)], &into[..]].concat()).ended(2).telling("twice");
+}

@@ -12,7 +12,7 @@ use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use indicatif::HumanCount;
 
-use super::batch::{Batch, is_current, stems, told, write_whole};
+use crate::commands::batch::{Batch, is_current, stems, told, write_whole};
 use crate::console::Console;
 use crate::exit::{Ending, Failure, OrUsage};
 

@@ -8,7 +8,7 @@ use analysis::figures::Figures;
 use analysis::report::{index, report};
 use anyhow::{Context, anyhow};
 
-use super::batch::{Batch, is_current, stems, told, write_whole};
+use crate::commands::batch::{Batch, is_current, stems, told, write_whole};
 use crate::console::Console;
 use crate::exit::{Ending, Failure, OrUsage};
 

@@ -13,6 +13,7 @@ use vision::{LandmarkSet, Outcome, Place};
 
 use super::Args;
 use super::differences::Differences;
+use super::per_input::PerInput;
 use crate::console::Console;
 use crate::exit::{Ending, Failure, OrUsage};
 
@@ -47,17 +48,20 @@ pub(super) struct Results {
 enum Table {
     Rows(RowWriter<BufWriter<StdoutLock<'static>>>),
     Differences(Box<Differences>),
+    PerInput(PerInput),
 }
 
 impl Results {
     pub(super) fn begin(
         args: &Args,
+        tables: Option<PerInput>,
         inputs: &[(Input, Frames)],
         landmarks: Option<Arc<LandmarkSet>>,
     ) -> Result<Self, Failure> {
-        let table = match args.diff {
-            true => Table::Differences(Box::new(Differences::begin(args.format.into(), inputs)?)),
-            false => Table::Rows(
+        let table = match (tables, args.diff) {
+            (Some(tables), _) => Table::PerInput(tables),
+            (None, true) => Table::Differences(Box::new(Differences::begin(args.format.into(), inputs)?)),
+            (None, false) => Table::Rows(
                 RowWriter::new(args.format.into(), Console::results()).context("cannot write the table")?,
             ),
         };
@@ -76,6 +80,7 @@ impl Results {
                 Ok(())
             }
             Table::Differences(differences) => differences.take(seen),
+            Table::PerInput(tables) => tables.take(seen),
         }
     }
 
@@ -93,6 +98,7 @@ impl Results {
                 Ok(Ending::Fine)
             }
             Table::Differences(differences) => differences.finish(console),
+            Table::PerInput(tables) => tables.finish().map(|()| Ending::Fine),
         }
     }
 }

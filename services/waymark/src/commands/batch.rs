@@ -27,7 +27,7 @@ pub(crate) struct Batch {
 
 impl Batch {
     /// The recordings in the order in which they were given, those of a glob in the order of their names.
-    pub(super) fn recordings(&self) -> Result<Vec<PathBuf>, Failure> {
+    pub(crate) fn recordings(&self) -> Result<Vec<PathBuf>, Failure> {
         let mut files = Vec::new();
         for given in &self.files {
             match Path::new(given).exists() {
@@ -39,7 +39,7 @@ impl Batch {
     }
 
     /// Does `work` for every recording, several at a time; the results are in the order of `files`.
-    pub(super) fn each<T: Send>(
+    pub(crate) fn each<T: Send>(
         &self,
         files: &[PathBuf],
         bar: &ProgressBar,
@@ -80,7 +80,7 @@ fn matching(given: &str) -> Result<Vec<PathBuf>, Failure> {
 
 /// A name for what is made of each recording: its file name without extension, told apart by a number where two share
 /// it.
-pub(super) fn stems(files: &[PathBuf]) -> Vec<String> {
+pub(crate) fn stems(files: &[PathBuf]) -> Vec<String> {
     let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let stems: Vec<String> = files.iter().map(stem).collect();
     let named =
@@ -92,19 +92,24 @@ pub(super) fn stems(files: &[PathBuf]) -> Vec<String> {
 }
 
 /// Whether `output` was made of `input` as it is now.
-pub(super) fn is_current(output: &Path, input: &Path) -> bool {
+pub(crate) fn is_current(output: &Path, input: &Path) -> bool {
     let modified = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
     modified(output).zip(modified(input)).is_some_and(|(output, input)| output >= input)
 }
 
+/// The name of a file that is not whole yet.
+pub(crate) fn unfinished(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".part");
+    PathBuf::from(name)
+}
+
 /// Writes a file that has its name only when it is whole; until then it ends in `.part`.
-pub(super) fn write_whole<T>(
+pub(crate) fn write_whole<T>(
     path: &Path,
     write: impl FnOnce(BufWriter<File>) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
-    let mut unfinished = path.as_os_str().to_owned();
-    unfinished.push(".part");
-    let unfinished = PathBuf::from(unfinished);
+    let unfinished = unfinished(path);
     let file =
         File::create(&unfinished).with_context(|| format!("cannot write `{}`", unfinished.display()))?;
     let done = write(BufWriter::with_capacity(1 << 16, file))?;
@@ -113,7 +118,7 @@ pub(super) fn write_whole<T>(
 }
 
 /// Tells of recordings that could not be worked on, and hands on what came of the others.
-pub(super) fn told<T>(results: Vec<anyhow::Result<T>>, console: Console) -> (Vec<T>, u64) {
+pub(crate) fn told<T>(results: Vec<anyhow::Result<T>>, console: Console) -> (Vec<T>, u64) {
     let (mut done, mut failed) = (Vec::new(), 0);
     for result in results {
         match result {
