@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
 
+use ingest::films::is_film;
 use vision::{RectPx, SizePx};
 
 /// A region of a picture, which is the whole of it where none was named.
@@ -44,6 +45,12 @@ pub enum RegionError {
         /// What stood behind the `#`.
         fragment: String,
     },
+    /// A time of something that has none.
+    #[error("`{file}` is no film, so #t= names nothing in it; write #xywh=X,Y,W,H")]
+    NotAFilm {
+        /// The file.
+        file: String,
+    },
     /// Nothing of it would be left.
     #[error("region {region} is empty; width and height must be greater than 0")]
     Empty {
@@ -78,6 +85,9 @@ impl FromStr for PictureRegion {
         }
         if file.is_empty() {
             return Err(RegionError::NoFile { text: text.to_owned() });
+        }
+        if shown_at.is_some() && !is_film(file) {
+            return Err(RegionError::NotAFilm { file: file.to_owned() });
         }
         Ok(Self { file: file.into(), shown_at, region })
     }

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use waymark_proto::keys::{Id, VehicleKeys};
 
+use crate::coder::Coder;
 use crate::error::CameraError;
 use crate::run::period;
 use crate::shots::Shots;
@@ -20,7 +21,7 @@ pub struct CameraConfig {
     pub vehicle: String,
     /// The camera's id.
     pub camera: String,
-    /// Where pictures come from: a directory or glob, `a film (`FILE.mp4`), `mcap:FILE#topic`, or `sim:SCENE?seed=N`.
+    /// Where pictures come from: a directory or glob, a film (`FILE.mp4`), `mcap:FILE#topic`, or `sim:SCENE?seed=N`.
     pub source: String,
     /// Pictures per second, for sources that do not bring their own times, within 0.01..=240.
     pub frame_rate_hz: f64,
@@ -84,6 +85,7 @@ impl CameraConfig {
     pub fn check(&self) -> Result<(), CameraError> {
         VehicleKeys::new(&self.fleet, &self.vehicle)?;
         Id::new("camera", &self.camera)?;
+        let _would_encode = Coder::new(self)?;
         period(Shots::open(self)?.frame_rate_hz().unwrap_or(self.frame_rate_hz))?;
         Ok(())
     }

@@ -79,7 +79,7 @@ impl Errors {
     /// Medians, having found the object often enough.
     fn medians(mut self) -> (f64, f64) {
         assert!(
-            self.range.len() >= 8,
+            self.range.len() >= 5,
             "only {} of {} sightings have a range",
             self.range.len(),
             self.bearing_rad.len()
