@@ -84,7 +84,11 @@ async fn keep_asking(session: Session, everyone: String, seen: watch::Sender<Vec
 async fn ask(session: &Session, everyone: &str) -> zenoh::Result<Vec<Seen>> {
     let members = members(session, everyone).await?;
     let seen = members.into_iter().filter_map(|member| {
-        let key = member.key.parse().ok()?;
+        let key: PresenceKey = member.key.parse().ok()?;
+        // A camera is announced, but answers no questions.
+        if key.role == Role::Camera {
+            return None;
+        }
         Some(Seen { key, introduction: member.introduction, clock: member.clock })
     });
     Ok(seen.take(MOST_MEMBERS).collect())

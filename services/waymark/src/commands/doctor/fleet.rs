@@ -2,14 +2,15 @@
 
 use runtime::clock::ClockOffset;
 use runtime::presence::{Member, members};
-use waymark_proto::keys::PresenceKey;
+use waymark_proto::keys::{PresenceKey, Role};
 use zenoh::Session;
 
 use super::finding::Finding;
 use super::subject::Subject;
 
 pub(super) async fn examine(session: &Session, subject: &Subject) -> Vec<Finding> {
-    match members(session, &PresenceKey::everyone(subject.keys.fleet())).await {
+    let announced = members(session, &PresenceKey::everyone(subject.keys.fleet())).await;
+    match announced.map(|members| members.into_iter().filter(answers_questions).collect::<Vec<_>>()) {
         Ok(members) if members.is_empty() => {
             let found = format!("no leader or follower of fleet {} is there", subject.keys.fleet());
             ["clocks", "versions"].map(|check| Finding::not_applicable(check, found.clone())).to_vec()
@@ -20,6 +21,11 @@ pub(super) async fn examine(session: &Session, subject: &Subject) -> Vec<Finding
         }
         Err(reason) => vec![Finding::no("clocks", reason.to_string(), "see the router's log")],
     }
+}
+
+/// Leaders and followers do; a camera is announced, and looked at by its pictures.
+fn answers_questions(member: &Member) -> bool {
+    member.key.parse::<PresenceKey>().is_ok_and(|key| key.role != Role::Camera)
 }
 
 fn clock(member: &Member) -> Finding {
