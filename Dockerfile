@@ -27,7 +27,7 @@ WORKDIR /source
 COPY . .
 # --target keeps the flag from build scripts and procedural macros, which cannot be static.
 RUN target=$(rustc -vV | sed -n 's/^host: //p') \
- && CARGO_PROFILE_RELEASE_STRIP=debuginfo RUSTFLAGS="-C target-feature=+crt-static" \
+ && CARGO_PROFILE_RELEASE_STRIP=symbols RUSTFLAGS="-C target-feature=+crt-static" \
     cargo build --release --locked -p waymark --target "$target" \
  && install -Ds "target/$target/release/waymark" /out/waymark
 
