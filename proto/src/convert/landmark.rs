@@ -1,5 +1,6 @@
 //! Landmark descriptors.
 
+use vision::learn::MAX_SHADES;
 use vision::{ColorStats, Digest, Landmark, ShapeClass, WindowPx};
 
 use super::check::{InvalidField, count_within, digest};
@@ -8,7 +9,6 @@ use crate::digest::{landmark_digest, shape_number};
 use crate::keys::Id;
 use crate::v1;
 
-const MAX_SHADES: usize = 16;
 /// The largest object that is believed, in metres.
 const MAX_SIZE_M: f32 = 1_000.0;
 

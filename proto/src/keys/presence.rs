@@ -35,6 +35,13 @@ impl Role {
             Self::Simulator => "simulator",
         }
     }
+
+    /// Whether such a process answers, on its token's key, who it is. A camera is announced only, and judged by its
+    /// pictures.
+    #[must_use]
+    pub const fn introduces_itself(self) -> bool {
+        !matches!(self, Self::Camera)
+    }
 }
 
 /// The liveliness token of one process, and the key on which it answers who it is:

@@ -18,7 +18,7 @@ use analysis::lesson::{FOLLOWER, learn_from};
 use recording::{
     Attachment, ChannelSpec, Command, Disk, JournalOptions, Latch, LatchKey, Message, Now, Recorder, Schema,
 };
-use simulator::{Rendered, SceneKind, SceneOptions, Simulator, TrueObject};
+use simulator::{Rendered, SceneKind, SceneOptions, Simulator};
 use vision::follow::{Follow, FollowOptions, FrameStamp};
 use vision::frame::decode::{DecodeLimits, decode};
 use vision::frame::encode::{Quality, encode_jpeg};
@@ -129,7 +129,7 @@ impl Drives {
             camera: "front".to_owned(),
             sequence: stamp.sequence,
             captured_at_ns: captured_at.nanos,
-            objects: rendered.truth.iter().map(true_object).collect(),
+            objects: rendered.truth.iter().map(Into::into).collect(),
         };
         self.store("/follower/camera/front/truth", stamp, &truth, Latch::None);
         if index % SKIPPED == SKIPPED - 1 {
@@ -176,20 +176,4 @@ impl Drives {
 /// The recorder's clocks at a moment of the drive.
 fn at(unix_ns: i64) -> Now {
     Now { elapsed: Duration::from_nanos((unix_ns - START_NS) as u64), unix_ns: unix_ns as u64 }
-}
-
-fn true_object(object: &TrueObject) -> v1::TrueObject {
-    let [x_px, y_px] = object.centroid_px;
-    let [left_px, top_px, right_px, bottom_px] = object.bbox_px;
-    v1::TrueObject {
-        object: object.object.clone(),
-        x_px,
-        y_px,
-        area_px2: object.area_px2,
-        left_px,
-        top_px,
-        right_px,
-        bottom_px,
-        visible: object.visible,
-    }
 }

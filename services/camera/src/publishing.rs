@@ -121,7 +121,7 @@ impl Publishing {
             camera: self.camera.clone(),
             sequence: attachment.sequence as u64,
             captured_at_ns: attachment.source_time_ns,
-            objects: objects.iter().map(true_object).collect(),
+            objects: objects.iter().map(Into::into).collect(),
         }
     }
 }
@@ -163,20 +163,4 @@ async fn offer_calibration(
         .await
         .map_err(CameraError::zenoh("publishing the calibration"))?;
     Ok(queryable)
-}
-
-fn true_object(object: &TrueObject) -> v1::TrueObject {
-    let [x_px, y_px] = object.centroid_px;
-    let [left_px, top_px, right_px, bottom_px] = object.bbox_px;
-    v1::TrueObject {
-        object: object.object.clone(),
-        x_px,
-        y_px,
-        area_px2: object.area_px2,
-        left_px,
-        top_px,
-        right_px,
-        bottom_px,
-        visible: object.visible,
-    }
 }

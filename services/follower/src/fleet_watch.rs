@@ -85,8 +85,7 @@ async fn ask(session: &Session, everyone: &str) -> zenoh::Result<Vec<Seen>> {
     let members = members(session, everyone).await?;
     let seen = members.into_iter().filter_map(|member| {
         let key: PresenceKey = member.key.parse().ok()?;
-        // A camera is announced, but answers no questions.
-        if key.role == Role::Camera {
+        if !key.role.introduces_itself() {
             return None;
         }
         Some(Seen { key, introduction: member.introduction, clock: member.clock })

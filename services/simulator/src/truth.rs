@@ -1,6 +1,7 @@
 //! Where everything really is on the picture.
 
 use vision::SizePx;
+use waymark_proto::v1;
 
 use crate::camera::Camera;
 use crate::polygon::{Moments, bounds, inside_frame, subtract};
@@ -26,6 +27,24 @@ pub struct TrueObject {
     pub range_m: f64,
     /// Direction in the ground plane from the optical axis, positive to the left.
     pub bearing_rad: f64,
+}
+
+impl From<&TrueObject> for v1::TrueObject {
+    fn from(object: &TrueObject) -> Self {
+        let [x_px, y_px] = object.centroid_px;
+        let [left_px, top_px, right_px, bottom_px] = object.bbox_px;
+        Self {
+            object: object.object.clone(),
+            x_px,
+            y_px,
+            area_px2: object.area_px2,
+            left_px,
+            top_px,
+            right_px,
+            bottom_px,
+            visible: object.visible,
+        }
+    }
 }
 
 /// Every named object of which at least a piece is visible, in the order of the world's list.

@@ -1,5 +1,6 @@
 //! What is tried.
 
+use vision::learn::MAX_SHADES;
 use vision::{ColorStats, Landmark, WindowPx};
 
 use super::Change;
@@ -10,8 +11,6 @@ const SIDES: [u16; 6] = [4, 6, 8, 12, 16, 24];
 const FACTORS: [f32; 5] = [0.5, 0.75, 1.5, 2.0, 3.0];
 /// The landmark as given, and every sweep but that of the shades.
 pub(super) const MOST_WITHOUT_SHADES: usize = 1 + SIDES.len() + 2 * FACTORS.len();
-/// The most shades that a descriptor may hold.
-const MAX_SHADES: usize = 16;
 /// The largest tolerances that a descriptor may hold: what 8-bit levels can differ by.
 const MAX_MEAN: f32 = 255.0;
 const MAX_VARIANCE: f32 = 16_256.25;

@@ -2,7 +2,7 @@
 
 use runtime::clock::ClockOffset;
 use runtime::presence::{Member, members};
-use waymark_proto::keys::{PresenceKey, Role};
+use waymark_proto::keys::PresenceKey;
 use zenoh::Session;
 
 use super::finding::Finding;
@@ -10,7 +10,7 @@ use super::subject::Subject;
 
 pub(super) async fn examine(session: &Session, subject: &Subject) -> Vec<Finding> {
     let announced = members(session, &PresenceKey::everyone(subject.keys.fleet())).await;
-    match announced.map(|members| members.into_iter().filter(answers_questions).collect::<Vec<_>>()) {
+    match announced.map(|members| members.into_iter().filter(introduces_itself).collect::<Vec<_>>()) {
         Ok(members) if members.is_empty() => {
             let found = format!("no leader or follower of fleet {} is there", subject.keys.fleet());
             ["clocks", "versions"].map(|check| Finding::not_applicable(check, found.clone())).to_vec()
@@ -23,9 +23,8 @@ pub(super) async fn examine(session: &Session, subject: &Subject) -> Vec<Finding
     }
 }
 
-/// Leaders and followers do; a camera is announced, and looked at by its pictures.
-fn answers_questions(member: &Member) -> bool {
-    member.key.parse::<PresenceKey>().is_ok_and(|key| key.role != Role::Camera)
+fn introduces_itself(member: &Member) -> bool {
+    member.key.parse::<PresenceKey>().is_ok_and(|key| key.role.introduces_itself())
 }
 
 fn clock(member: &Member) -> Finding {
