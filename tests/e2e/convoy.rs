@@ -90,9 +90,11 @@ impl Place {
     }
 
     /// A follower with a camera of its own, which needs no router to reach it.
-    pub(crate) fn start_vehicle(&self, vehicle: &str) -> Vehicle {
+    pub(crate) fn start_vehicle(&self, vehicle: &str, more: &[&str]) -> Vehicle {
         let own = format!("tcp/{}", free_address());
-        let (program, face) = self.start_follower(vehicle, &[&format!("zenoh.listen=[\"{own}\"]")]);
+        let listen = format!("zenoh.listen=[\"{own}\"]");
+        let settings: Vec<&str> = [listen.as_str()].into_iter().chain(more.iter().copied()).collect();
+        let (program, face) = self.start_follower(vehicle, &settings);
         let settings = [
             connect(&own),
             "zenoh.mode=peer".to_owned(),

@@ -68,6 +68,16 @@ impl Face {
         serde_json::from_slice(&answer.body).unwrap_or_else(|error| panic!("GET {path}: {error}"))
     }
 
+    /// Asks for something to be done, and returns the status of the answer.
+    ///
+    /// # Panics
+    /// When nobody answers.
+    #[must_use]
+    pub fn post(&self, path: &str) -> u16 {
+        let answer = self.agent.post(format!("{}{path}", self.root)).send_empty();
+        answer.unwrap_or_else(|error| panic!("POST {path}: {error}")).status().as_u16()
+    }
+
     /// Asks for a document again with every event of the vehicle until it satisfies `wanted`.
     ///
     /// # Panics

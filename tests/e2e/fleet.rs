@@ -13,7 +13,7 @@ fn a_leader_that_stops_is_shown_as_gone_and_as_present_when_it_goes_on() {
     let place = Place::new();
     let _router = place.start_router();
     let (leader, _) = place.start_service("leader", "leader", &[]);
-    let vehicle = place.start_vehicle("follower");
+    let vehicle = place.start_vehicle("follower", &[]);
     let present = |wanted: bool| {
         vehicle.face.json_once("/api/v1/status", |status| status["leader"]["present"] == wanted);
     };
@@ -81,7 +81,7 @@ fn a_router_killed_pauses_no_registration_and_is_found_again() {
     let place = Place::new();
     let router = place.start_router();
     let (_leader, _) = place.start_service("leader", "leader", &[]);
-    let vehicle = place.start_vehicle("follower");
+    let vehicle = place.start_vehicle("follower", &[]);
     vehicle.await_frames(5);
     place.edit(&publish([landmark("red", 120.0)]));
     vehicle.face.json_once("/api/v1/status", |status| status["landmarks"] == 1);
@@ -105,7 +105,7 @@ fn a_follower_that_stops_holds_up_neither_the_other_nor_the_leader() {
     let place = Place::new();
     let _router = place.start_router();
     let (_leader, leader) = place.start_service("leader", "leader", &[]);
-    let (one, other) = (place.start_vehicle("one"), place.start_vehicle("other"));
+    let (one, other) = (place.start_vehicle("one", &[]), place.start_vehicle("other", &[]));
     one.await_frames(1);
     one.program.freeze();
     place.edit(&publish([landmark("red", 120.0)]));
@@ -132,7 +132,7 @@ fn a_late_python_client_receives_the_set_and_then_registrations() {
     let _router = place.start_router();
     let landmarks = format!("landmarks=[\"{}\"]", workspace().join("tests/containers/landmarks").display());
     let (_leader, _) = place.start_service("leader", "leader", &[&landmarks]);
-    let vehicle = place.start_vehicle("follower");
+    let vehicle = place.start_vehicle("follower", &[]);
     vehicle.face.json_once("/api/v1/status", |status| status["landmarks"] == 2);
     let client = std::process::Command::new(python)
         .arg(workspace().join("tests/python/late_client.py"))

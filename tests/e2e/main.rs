@@ -9,3 +9,4 @@ mod dependency_rule;
 mod documented_commands;
 mod fleet;
 mod landmarks;
+mod recorder;

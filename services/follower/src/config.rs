@@ -58,6 +58,13 @@ pub struct RecorderConfig {
     pub max_total_bytes: u64,
     /// Left free on the disk: the oldest recordings make room where `max_total_bytes` is set, else recording stops.
     pub min_free_bytes: u64,
+    /// So many seconds before recording is started are recorded too. 0 keeps none.
+    pub pre_trigger_s: u64,
+    /// Memory those seconds may take; beyond it the oldest are given up.
+    pub pre_trigger_max_bytes: usize,
+    /// Whether every registered picture is recorded a second time with what was seen drawn into it, for viewers that do
+    /// not show annotations.
+    pub burned_in: bool,
 }
 
 /// Names of the registration modes.
@@ -111,6 +118,9 @@ impl Default for RecorderConfig {
             max_file_s: 3600,
             max_total_bytes: 0,
             min_free_bytes: 1 << 30,
+            pre_trigger_s: 0,
+            pre_trigger_max_bytes: 48 << 20,
+            burned_in: false,
         }
     }
 }

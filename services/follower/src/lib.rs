@@ -5,6 +5,7 @@
 //! they are ([`accepted`]); every picture and every loss is counted.
 
 pub mod accepted;
+mod burned_in;
 mod calibration;
 pub mod config;
 mod counters;

@@ -83,6 +83,9 @@ fn camera(station: &Station) {
         counter!("waymark_frames_dropped_total", "camera" => camera.clone(), "reason" => reason)
             .absolute(count);
     }
+    if let Some(not_burned_in) = station.not_burned_in() {
+        counter!("waymark_frames_not_burned_in_total", "camera" => camera.clone()).absolute(not_burned_in);
+    }
     let measured = status.landmarks.iter().filter(|landmark| landmark.result == "measured").count();
     gauge!("waymark_landmarks_measured", "camera" => camera).set(measured as f64);
 }

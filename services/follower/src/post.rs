@@ -7,13 +7,14 @@ use ingest::video_thread::VideoThread;
 use recording::Journal;
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
-use vision::follow::FollowOptions;
 use vision::{LandmarkSet, Pinhole};
 use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
 use zenoh::Session;
 use zenoh::pubsub::Subscriber;
 
+use crate::burned_in::BurnedIn;
 use crate::calibration;
+use crate::config::FollowerConfig;
 use crate::counters::IntakeCounters;
 use crate::error::FollowerError;
 use crate::intake::Intake;
@@ -33,6 +34,7 @@ pub(crate) struct Post {
     intake: Intake,
     results: Results,
     waiting: mpsc::Receiver<Arc<Registered>>,
+    burned_in: Option<BurnedIn>,
     station: Arc<Station>,
     pinhole: watch::Sender<Option<Pinhole>>,
 }
@@ -44,6 +46,7 @@ pub(crate) struct MannedPost {
     subscriber: Subscriber<()>,
     _calibration: Subscriber<()>,
     handing_on: JoinHandle<()>,
+    burned_in: Option<BurnedIn>,
     station: Arc<Station>,
 }
 
@@ -51,7 +54,7 @@ impl Post {
     /// Starts the camera's thread; no picture reaches it yet.
     pub(crate) async fn set_up(
         id: Id,
-        options: FollowOptions,
+        config: &FollowerConfig,
         own: &VehicleKeys,
         session: &Session,
         journal: &Arc<Journal>,
@@ -61,20 +64,33 @@ impl Post {
         let (latest, newest) = watch::channel(None);
         let (pinhole, known) = watch::channel(None);
         let surroundings = Surroundings { landmarks: landmarks.clone(), pinhole: known };
+        let options = config.follow_options();
+        let no_thread = |source| FollowerError::Thread { camera: id.to_string(), source };
         let thread = CameraThread::spawn(id.as_str(), options, landmarks, Outlets { every, latest })
-            .map_err(|source| FollowerError::Thread { camera: id.to_string(), source })?;
-        let video = VideoThread::spawn(id.as_str(), thread.mailbox())
-            .map_err(|source| FollowerError::Thread { camera: id.to_string(), source })?;
+            .map_err(no_thread)?;
+        let video = VideoThread::spawn(id.as_str(), thread.mailbox()).map_err(no_thread)?;
         let counters = Arc::new(IntakeCounters::default());
         let topics = CameraTopics::new(own, &id);
+        let wanted = config.recorder.burned_in.then(|| Arc::clone(&topics.burned_in));
+        let burned_in = wanted
+            .map(|channel| BurnedIn::spawn(id.as_str(), channel, Arc::clone(journal)))
+            .transpose()
+            .map_err(no_thread)?;
         let (mailbox, journal_of_intake) = (thread.mailbox(), Arc::clone(journal));
         let intake =
             Intake::new(topics.clone(), journal_of_intake, mailbox, video.queue(), Arc::clone(&counters));
         let results =
             Results::declare(session, own, &id, topics, options, Arc::clone(journal), surroundings).await?;
-        let losses = Losses { intake: counters, video: video.counters(), thread: thread.counters() };
-        let station = Station::new(id.as_str(), thread.mailbox(), losses, newest);
-        Ok(Self { id, thread, video, intake, results, waiting, station: Arc::new(station), pinhole })
+        let slot = burned_in.as_ref().map(BurnedIn::slot);
+        let losses = Losses {
+            intake: counters,
+            video: video.counters(),
+            thread: thread.counters(),
+            burned_in: slot.clone(),
+        };
+        let station = Arc::new(Station::new(id.as_str(), thread.mailbox(), losses, newest));
+        let results = results.drawn_into(slot);
+        Ok(Self { id, thread, video, intake, results, waiting, burned_in, station, pinhole })
     }
 
     pub(crate) fn station(&self) -> Arc<Station> {
@@ -88,7 +104,7 @@ impl Post {
         own: &VehicleKeys,
         face: Arc<Face>,
     ) -> Result<MannedPost, FollowerError> {
-        let Self { id, thread, video, mut intake, results, waiting, station, pinhole } = self;
+        let Self { id, thread, video, mut intake, results, waiting, burned_in, station, pinhole } = self;
         let (topics, journal) = (CameraTopics::new(own, &id), Arc::clone(&face.journal));
         let handing_on = tokio::spawn(results.run(waiting, Arc::clone(&station), face));
         let subscriber = session
@@ -97,7 +113,15 @@ impl Post {
             .await
             .map_err(FollowerError::zenoh("subscribing to a camera's pictures"))?;
         let calibration = calibration::record(session, own, &id, topics, journal, pinhole).await?;
-        Ok(MannedPost { thread, video, subscriber, _calibration: calibration, handing_on, station })
+        Ok(MannedPost {
+            thread,
+            video,
+            subscriber,
+            _calibration: calibration,
+            handing_on,
+            burned_in,
+            station,
+        })
     }
 }
 
@@ -112,6 +136,9 @@ impl MannedPost {
         let finished = tokio::task::spawn_blocking(move || [video.finish(), thread.finish()]).await;
         let sound = finished.is_ok_and(|sound| sound == [true; 2]);
         let handed_on = self.handing_on.await.is_ok();
+        let burned_in = self.burned_in;
+        let drawn = tokio::task::spawn_blocking(move || burned_in.is_none_or(BurnedIn::finish)).await;
+        let sound = sound && drawn.is_ok_and(|sound| sound);
         (!(sound && handed_on)).then(|| self.station.id().to_owned())
     }
 }

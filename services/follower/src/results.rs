@@ -14,6 +14,7 @@ use waymark_proto::{annotations, convert, foxglove, v1};
 use zenoh::Session;
 use zenoh::qos::{Priority, Reliability};
 
+use crate::burned_in;
 use crate::error::FollowerError;
 use crate::outbound::Outbound;
 use crate::station::Station;
@@ -41,6 +42,7 @@ pub(crate) struct Results {
     options: FollowOptions,
     journal: Arc<Journal>,
     surroundings: Surroundings,
+    burned_in: Option<burned_in::Slot>,
     registrations: Outbound,
     annotations: Outbound,
 }
@@ -72,9 +74,15 @@ impl Results {
             options,
             journal,
             surroundings,
+            burned_in: None,
             registrations: registrations.await?,
             annotations: annotations.await?,
         })
+    }
+
+    /// The same, and every result is put into `slot` to be drawn.
+    pub(crate) fn drawn_into(self, slot: Option<burned_in::Slot>) -> Self {
+        Self { burned_in: slot, ..self }
     }
 
     /// Hands on every result until the camera's thread has ended and all of them are out.
@@ -86,6 +94,9 @@ impl Results {
     ) {
         while let Some(registered) = results.recv().await {
             self.publish(station.id(), &registered).await;
+            if let Some(slot) = &self.burned_in {
+                slot.put(Arc::clone(&registered));
+            }
             face.show(&station, registered);
         }
     }

@@ -8,7 +8,7 @@ use std::time::Duration;
 use axum::Router;
 
 use http_face::Policy;
-use recording::{Journal, JournalOptions, Report, Retention, Rotation};
+use recording::{Journal, JournalOptions, PreTrigger, Report, Retention, Rotation};
 use runtime::presence::{Presence, PresencePlace};
 use runtime::{Identity, Shutdown, StateDir};
 use tokio::net::TcpListener;
@@ -161,8 +161,7 @@ async fn man_posts(
     let mut posts = Vec::new();
     for camera in &config.cameras {
         let id = Id::new("camera", camera)?;
-        posts
-            .push(Post::set_up(id, config.follow_options(), own, session, journal, landmarks.clone()).await?);
+        posts.push(Post::set_up(id, config, own, session, journal, landmarks.clone()).await?);
     }
     Ok(posts)
 }
@@ -186,6 +185,10 @@ fn journal_options(config: &FollowerConfig) -> JournalOptions {
         retention: (recorder.max_total_bytes > 0)
             .then_some(Retention { max_total_bytes: recorder.max_total_bytes }),
         free_floor_bytes: recorder.min_free_bytes,
+        pre_trigger: (recorder.pre_trigger_s > 0).then_some(PreTrigger {
+            duration: Duration::from_secs(recorder.pre_trigger_s),
+            max_bytes: recorder.pre_trigger_max_bytes,
+        }),
         metadata: BTreeMap::from([
             ("versions".to_owned(), versions),
             ("config".to_owned(), config.as_metadata()),

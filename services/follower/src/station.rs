@@ -10,6 +10,7 @@ use ingest::mailbox::Mailbox;
 use ingest::video_thread::VideoCounters;
 use tokio::sync::watch;
 
+use crate::burned_in;
 use crate::counters::IntakeCounters;
 use crate::fps::RateMeter;
 use crate::status::{CameraStatus, Dropped, landmarks_from_outcome};
@@ -23,6 +24,8 @@ pub(crate) struct Losses {
     pub(crate) intake: Arc<IntakeCounters>,
     pub(crate) video: Arc<VideoCounters>,
     pub(crate) thread: Arc<CameraCounters>,
+    /// Where pictures wait to be drawn, if they are.
+    pub(crate) burned_in: Option<burned_in::Slot>,
 }
 
 /// What is known of one camera.
@@ -66,7 +69,7 @@ impl Station {
     }
 
     pub(crate) fn dropped(&self) -> Dropped {
-        let Losses { intake, video, thread } = &self.losses;
+        let Losses { intake, video, thread, .. } = &self.losses;
         Dropped {
             missed: intake.missed_count(),
             overrun: video.overrun(),
@@ -76,6 +79,12 @@ impl Station {
             refused: intake.refused_count(),
             unread: thread.unread(),
         }
+    }
+
+    /// Registered pictures that were not recorded with what was seen in them, because the next one was there; `None` where
+    /// none are.
+    pub(crate) fn not_burned_in(&self) -> Option<u64> {
+        self.losses.burned_in.as_ref().map(|slot| slot.replaced())
     }
 
     pub(crate) fn registered(&self) -> u64 {

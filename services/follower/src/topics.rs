@@ -26,6 +26,8 @@ pub(crate) struct CameraTopics {
     pub(crate) annotations: Arc<ChannelSpec>,
     /// What the next outcome depends on; in recordings only.
     pub(crate) follow_state: Arc<ChannelSpec>,
+    /// Pictures with what was seen drawn into them; in recordings only, where asked for.
+    pub(crate) burned_in: Arc<ChannelSpec>,
 }
 
 /// The channels that belong to no camera.
@@ -71,6 +73,10 @@ impl CameraTopics {
             ),
             follow_state: channel::<v1::FollowState>(
                 format!("/{}/camera/{camera}/follow", keys.vehicle()),
+                String::new(),
+            ),
+            burned_in: channel::<foxglove::CompressedImage>(
+                format!("/{}/camera/{camera}/burned_in", keys.vehicle()),
                 String::new(),
             ),
         }

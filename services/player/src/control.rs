@@ -19,6 +19,8 @@ pub enum Command {
     Toggle,
     /// Plays at another rate.
     Rate(Rate),
+    /// Plays so many times as fast as now, within what [`Rate`] allows.
+    Scale(f64),
     /// Goes on from there, counted from the beginning; state is published anew.
     Seek(Duration),
     /// Goes so many seconds forward, or back.
@@ -36,6 +38,8 @@ pub struct Status {
     pub rate: f64,
     /// Recorded seconds from the beginning.
     pub position_s: f64,
+    /// Recorded seconds from the beginning to the last message; `None` where a recording has no summary.
+    pub duration_s: Option<f64>,
     /// Messages published, state of each start included.
     pub published: u64,
     /// How often it began again.
@@ -54,6 +58,12 @@ impl Control {
     #[must_use]
     pub fn ask(&self, command: Command) -> bool {
         self.commands.try_send(command).is_ok()
+    }
+
+    /// Waits until it says something new; `None` once it has ended.
+    pub async fn next_status(&mut self) -> Option<Status> {
+        self.status.changed().await.ok()?;
+        Some(*self.status.borrow_and_update())
     }
 
     /// What it says of itself, at most a tenth of a second old.

@@ -8,6 +8,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use recording::RecordingError;
 use recording::excerpt::{Excerpt, Selection};
 use recording::reader::{MessageReader, Strictness};
+use recording::summary::Summary;
 use recording::walk::{RecordedChannel, RecordedMessage};
 use waymark_proto::payload::WireMessage;
 use waymark_proto::{foxglove, v1};
@@ -46,6 +47,16 @@ impl Reel {
         begun.sort();
         let Some(&(begins_ns, _)) = begun.first() else { return Ok(None) };
         Ok(Some(Self { files: begun.into_iter().map(|(_, file)| file).collect(), begins_ns }))
+    }
+
+    /// From the very first message to the very last, as the recordings' summaries have it; `None` where one has none.
+    pub(crate) fn duration_ns(&self) -> Option<u64> {
+        let mut ends_ns = self.begins_ns;
+        for file in &self.files {
+            let summary = Summary::read(file).ok()??;
+            ends_ns = ends_ns.max(summary.log_span_ns()?.1);
+        }
+        Some(ends_ns - self.begins_ns)
     }
 
     /// Reads from `from_ns` on, on a thread of its own, which ends when nobody takes any more.

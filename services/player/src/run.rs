@@ -60,21 +60,14 @@ pub fn play(
 ) -> Result<(Control, JoinHandle<Result<PlayReport, PlayError>>), PlayError> {
     let reel = Reel::open(&options.files)?.ok_or(PlayError::Nothing)?;
     let (commands, asked) = sync_channel(WAITING_COMMANDS);
-    let (status, watched) = watch::channel(Status::default());
+    let duration_s = reel.duration_ns().map(|duration_ns| Duration::from_nanos(duration_ns).as_secs_f64());
+    let report = PlayReport { status: Status { duration_s, ..Status::default() }, ..PlayReport::default() };
+    let (status, watched) = watch::channel(report.status);
     let stage = Stage::new(session, options.remaps.clone());
     let position_ns = reel.begins_ns.saturating_add(options.start.as_nanos() as u64);
     let mut tempo = Tempo::new(options.rate, position_ns, Instant::now());
     tempo.set_paused(options.paused, position_ns, Instant::now());
-    let player = Player {
-        options,
-        reel,
-        stage,
-        tempo,
-        position_ns,
-        report: PlayReport::default(),
-        status,
-        told_at: None,
-    };
+    let player = Player { options, reel, stage, tempo, position_ns, report, status, told_at: None };
     let thread = std::thread::Builder::new().name("player".to_owned()).spawn(move || player.run(&asked))?;
     Ok((Control { commands, status: watched }, thread))
 }
@@ -192,6 +185,9 @@ impl Player {
             Command::Resume => self.tempo.set_paused(false, self.position_ns, now),
             Command::Toggle => self.tempo.set_paused(!paused, self.position_ns, now),
             Command::Rate(rate) => self.tempo.set_rate(rate, self.position_ns, now),
+            Command::Scale(factor) => {
+                self.tempo.set_rate(self.tempo.rate().scaled(factor), self.position_ns, now);
+            }
             Command::Seek(to) => {
                 return Some(Cut::Seek(self.reel.begins_ns.saturating_add(to.as_nanos() as u64)));
             }

@@ -21,6 +21,12 @@ impl Rate {
         if allowed { Ok(Self(rate)) } else { Err(PlayError::Rate(rate)) }
     }
 
+    /// So many times as fast, within the limits; as fast as possible stays so.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        if self.0 == 0.0 { self } else { Self((self.0 * factor).clamp(0.01, 1000.0)) }
+    }
+
     /// The number.
     #[must_use]
     pub fn get(self) -> f64 {
@@ -118,6 +124,8 @@ mod tests {
 
     #[test]
     fn rates_are_bounded() {
+        let fastest = Rate::new(0.0).unwrap();
+        assert_eq!((Rate::RECORDED.scaled(1e9).get(), fastest.scaled(2.0)), (1000.0, fastest));
         for rate in [-1.0, 0.001, 1001.0, f64::NAN, f64::INFINITY] {
             assert!(Rate::new(rate).is_err(), "{rate}");
         }

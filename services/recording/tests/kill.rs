@@ -1,7 +1,8 @@
 //! `kill -9` at any moment: what the journal had counted as stored is in the recovered file, without a hole.
 //!
 //! The victim is this test binary itself, started again: it offers a message for every line it reads and answers
-//! how many it has accepted and stored. `WAYMARK_KILLS` sets how often it is killed. How many seconds each kill cost
+//! how many it has accepted and stored. `WAYMARK_KILLS` sets how often it is killed, `WAYMARK_KILLS_KEPT` a directory
+//! that keeps what was recovered, for readers that are not ours (`tests/python/check_recording.py`). How many seconds each kill cost
 //! is printed, not judged: it is a promise about a disk that keeps up, and this machine's may be busy.
 
 #![allow(clippy::unwrap_used, reason = "a test ends where its preparation fails")]
@@ -43,6 +44,9 @@ fn kill_9_costs_nothing_that_was_stored() {
         assert!(recovered.iter().copied().eq(0..recovered.len() as u32), "a hole before the end");
         assert!(recovered.len() as u64 >= stored, "{} of {stored} stored", recovered.len());
         assert_ne!(check(&report.output).unwrap().verdict(), Verdict::Damaged);
+        if let Some(kept) = std::env::var_os("WAYMARK_KILLS_KEPT") {
+            std::fs::copy(&report.output, Path::new(&kept).join(format!("kill-{kill:03}.mcap"))).unwrap();
+        }
         let lost = accepted_at.get(recovered.len()).map_or(Duration::ZERO, |first| killed_at - *first);
         println!("kill {kill}: {} accepted, {} recovered, {lost:?} lost", accepted_at.len(), recovered.len());
     }

@@ -28,7 +28,7 @@ pub(crate) fn run(cli: Cli) -> Result<Ending, Failure> {
         Command::Leader(args) => leader::run(&args),
         Command::Follower(args) => follower::run(&args),
         Command::Camera(args) | Command::Simulate(args) => camera::run(&args),
-        Command::Play(args) => play::run(&args),
+        Command::Play(args) => play::run(&args, console),
         Command::Router(args) => router::run(&args),
         Command::Landmark(command) => landmark::run(command, console),
         Command::Recording(command) => recording::run(command, console),

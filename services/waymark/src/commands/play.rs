@@ -1,6 +1,7 @@
 //! `waymark play`.
 
 mod keyboard;
+mod progress;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -16,6 +17,7 @@ use tokio::net::TcpListener;
 use zenoh::Session;
 
 use crate::commands::service::run_until_signal;
+use crate::console::Console;
 use crate::exit::{Ending, Failure, OrUsage};
 use keyboard::Keyboard;
 
@@ -64,7 +66,7 @@ pub(crate) struct Args {
     connect: String,
 }
 
-pub(crate) fn run(args: &Args) -> Result<Ending, Failure> {
+pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
     let rate = Rate::new(args.rate).or_usage()?;
     let settings = SessionSettings { connect: vec![args.connect.clone()], ..SessionSettings::default() };
     let options = PlayOptions {
@@ -77,13 +79,14 @@ pub(crate) fn run(args: &Args) -> Result<Ending, Failure> {
     };
     let listen = args.listen;
     run_until_signal(&settings, &LogSettings::default(), async move |session, shutdown| {
-        play_until_done(options, listen, session, shutdown).await
+        play_until_done(options, listen, console, session, shutdown).await
     })
 }
 
 async fn play_until_done(
     options: PlayOptions,
     listen: SocketAddr,
+    console: Console,
     session: Session,
     shutdown: Shutdown,
 ) -> anyhow::Result<Ending> {
@@ -92,6 +95,7 @@ async fn play_until_done(
     let (control, thread) = play(options, session)?;
     tracing::info!(control = %address, "playing");
     let _keyboard = Keyboard::begin(control.clone());
+    let shown = tokio::spawn(progress::show(control.clone(), console));
     let web = tokio::spawn(http_face::serve(listener, routes(control.clone()), Policy::default(), {
         let shutdown = shutdown.clone();
         async move { shutdown.requested().await }
@@ -99,7 +103,7 @@ async fn play_until_done(
     let stopper = tokio::spawn(stop_when_asked(control, shutdown.clone()));
     let played = tokio::task::spawn_blocking(move || thread.join()).await?;
     shutdown.request();
-    let (_served, _stopped) = (web.await, stopper.await);
+    let (_served, _stopped, _shown) = (web.await, stopper.await, shown.await);
     let report = played.map_err(|_panic| player::PlayError::Panicked)??;
     tracing::info!(published = report.status.published, "played");
     Ok(Ending::Fine)

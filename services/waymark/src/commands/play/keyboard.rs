@@ -2,7 +2,6 @@
 
 use std::io::{IsTerminal, Read, Stdin, stdin};
 
-use player::tempo::Rate;
 use player::{Command, Control};
 use rustix::termios::{LocalModes, OptionalActions, Termios, tcgetattr, tcsetattr};
 
@@ -42,22 +41,20 @@ impl Drop for Keyboard {
 fn read_keys(input: &Stdin, control: &Control) {
     for key in input.lock().bytes() {
         let Ok(key) = key else { return };
-        if let Some(command) = meaning(key, control.status().rate)
-            && !control.ask(command)
-        {
-            return;
+        if let Some(command) = meaning(key) {
+            // A key that is held down asks more than can be done at once.
+            let _asked_too_much = control.ask(command);
         }
     }
 }
 
-fn meaning(key: u8, rate: f64) -> Option<Command> {
-    let scaled = |factor: f64| Rate::new((rate * factor).clamp(0.01, 1000.0)).ok().map(Command::Rate);
+fn meaning(key: u8) -> Option<Command> {
     match key {
         b' ' => Some(Command::Toggle),
         b'f' => Some(Command::Skip(SKIP_S)),
         b'b' => Some(Command::Skip(-SKIP_S)),
-        b'+' => scaled(2.0),
-        b'-' => scaled(0.5),
+        b'+' => Some(Command::Scale(2.0)),
+        b'-' => Some(Command::Scale(0.5)),
         b'q' => Some(Command::Stop),
         _ => None,
     }
