@@ -107,8 +107,8 @@ fn victim() {
     let file_descriptor_set =
         Bytes::from_static(b"\x0a\x1c\x0a\x01t\x12\x04test\x22\x09\x0a\x07Message\x62\x06proto3");
     let channel = Arc::new(ChannelSpec {
-        topic: "/image".to_owned(),
-        key_expression: "image".to_owned(),
+        topic: "/car/status".to_owned(),
+        key_expression: "car/status".to_owned(),
         schema: Schema { name: "test.Message".to_owned(), file_descriptor_set },
     });
     // Field 1, length-delimited.
