@@ -6,6 +6,7 @@
 //! The method is the statistical-gradient registration of the reference thesis, section 4.0.3. One frame passes
 //! seven stages, each a function in a file of that name: [`statistics`] → [`mask`] → [`components`] → [`outline`]
 //! → [`hough`] → [`shape`] → [`measure`]; [`mod@register`] runs them, [`follow`] runs [`mod@register`] over time.
+//! What the method is compared with is in [`methods`].
 //!
 //! Conventions (ARCHITECTURE.md): frame pixels have their origin at the top-left **corner** of the picture, x to the
 //! right, y down, so the centre of the first pixel is (0.5, 0.5); colours are 8-bit levels in the order R, G, B;
@@ -27,6 +28,7 @@ pub mod landmark;
 pub mod learn;
 pub mod mask;
 pub mod measure;
+pub mod methods;
 pub mod nearest;
 pub mod outcome;
 pub mod outline;

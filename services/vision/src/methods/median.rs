@@ -1,0 +1,62 @@
+//! The median filter (thesis 2.3): each pixel becomes the median of a window around it, so single wrong pixels vanish
+//! and straight edges stay.
+
+use std::num::NonZeroU16;
+
+use super::border::Border;
+use super::plane::Plane;
+
+/// The median over a window of `width` × `height` pixels. Of an even number of pixels it is the mean of the middle two,
+/// as MATLAB has it (Fig 2.1 uses 2 × 2). A window of even size has one pixel more before its middle than after it.
+#[must_use]
+pub fn median(plane: &Plane, width: NonZeroU16, height: NonZeroU16, border: Border) -> Plane {
+    let columns = border.places(plane.width(), width.get().into());
+    let rows = border.places(plane.height(), height.get().into());
+    let mut window = Vec::with_capacity(usize::from(width.get()) * usize::from(height.get()));
+    Plane::from_fn(plane.size(), |x, y| {
+        window.clear();
+        for row in &rows[y as usize..][..height.get().into()] {
+            let row = row.map(|row| plane.row(row as u32));
+            let columns = &columns[x as usize..][..width.get().into()];
+            window.extend(columns.iter().map(|column| row.zip(*column).map_or(0.0, |(row, x)| row[x])));
+        }
+        middle(&mut window)
+    })
+}
+
+/// The median of at least one value.
+fn middle(values: &mut [f32]) -> f32 {
+    let (half, odd) = (values.len() / 2, !values.len().is_multiple_of(2));
+    let (below, &mut upper, _) = values.select_nth_unstable_by(half, f32::total_cmp);
+    if odd {
+        return upper;
+    }
+    let lower = below.iter().copied().max_by(f32::total_cmp).unwrap_or(upper);
+    (lower + upper) / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::SizePx;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_single_wrong_pixel_vanishes_and_an_edge_stays() {
+        let edge = Plane::from_fn(SizePx { width: 8, height: 6 }, |x, _| if x < 4 { 10.0 } else { 200.0 });
+        let mut noisy = edge.clone();
+        noisy.row_mut(3)[1] = 255.0;
+        let side = NonZeroU16::new(3).unwrap();
+        assert_eq!(median(&noisy, side, side, Border::Nearest), edge);
+        assert!(median(&Plane::default(), side, side, Border::Zero).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn the_middle_is_that_of_the_sorted_values(mut values in proptest::collection::vec(-9f32..9.0, 1..30)) {
+            let median = middle(&mut values.clone());
+            values.sort_by(f32::total_cmp);
+            prop_assert_eq!(median, (values[(values.len() - 1) / 2] + values[values.len() / 2]) / 2.0);
+        }
+    }
+}
