@@ -13,7 +13,7 @@ pub(crate) mod like;
 pub(crate) mod likeness;
 pub(crate) mod noise;
 pub(crate) mod palette;
-mod patch;
+pub(crate) mod patch;
 mod segment;
 mod soft_edge;
 mod tracing;

@@ -2,6 +2,7 @@
 
 use super::windows::{Sample, stats};
 use crate::adaptive::palette::{Cluster, levels, nearest, palette};
+use crate::adaptive::patch::{Patch, polygon_area_and_centroid};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
 use crate::landmark::ColorStats;
@@ -16,6 +17,8 @@ const PALETTE_LIMIT: usize = 24;
 const DENSITY_RATIO: f32 = 3.0;
 /// Shades that cover less of the object are left to convex filling and soft edges.
 const MIN_SHARE: f32 = 0.10;
+/// A shade of which less lies outside another's outline is an inlay in it.
+const OUTSIDE_PART: f32 = 0.2;
 
 /// The object's shades in one region and the pixels that show them.
 pub(super) fn sample(frame: &Frame, region: RectPx) -> Sample {
@@ -122,36 +125,62 @@ fn place(region: RectPx, x: u32, y: u32) -> Place {
     }
 }
 
-/// Takes lettering, borders and mixed edge pixels away: what stays are shades of some extent that either hang
-/// together or are darker and lighter tones of the main one.
+/// Takes lettering, inlays, borders and mixed edge pixels away: what stays is the colour that spans the object, its darker
+/// and lighter tones, and other faces of some extent beside it. What lies inside belongs to the object by its outline.
 fn keep_shades(region: RectPx, labels: &[Option<usize>], colours: &[Cluster]) -> Vec<Option<usize>> {
-    let count = |shade: usize| labels.iter().filter(|label| **label == Some(shade)).count();
+    let shades: Vec<Shade> = (0..colours.len()).map(|shade| Shade::of(region, labels, shade)).collect();
     let object = labels.iter().flatten().count().max(1) as f32;
-    let Some(main) =
-        (0..colours.len()).max_by_key(|&shade| (solid_pixels(region, labels, shade), count(shade)))
-    else {
-        return labels.to_vec();
-    };
+    let by_merit = |a: &usize, b: &usize| shades[*a].merit().total_cmp(&shades[*b].merit());
+    let Some(main) = (0..colours.len()).max_by(by_merit) else { return labels.to_vec() };
+    let outline = shades[main].body.convex();
     let keep: Vec<bool> = (0..colours.len())
-        .map(|shade| {
-            let large = count(shade) as f32 >= MIN_SHARE * object;
-            let solid = solid_pixels(region, labels, shade) as f32 >= 0.3 * count(shade) as f32;
-            shade == main || (large && (solid || same_shading(colours[main].mean, colours[shade].mean)))
+        .map(|at| {
+            let shade = &shades[at];
+            let large = shade.pixels as f32 >= MIN_SHARE * object;
+            let beside = shade.is_solid() && !shade.lies_inside(&outline);
+            at == main || (large && (beside || same_shading(colours[main].mean, colours[at].mean)))
         })
         .collect();
     labels.iter().map(|label| label.filter(|&shade| keep[shade])).collect()
 }
 
-/// Pixels of a shade whose whole neighbourhood shows it too. The neighbourhood grows with the region, so strokes of
-/// lettering and borders have none at any scale.
-fn solid_pixels(region: RectPx, labels: &[Option<usize>], shade: usize) -> usize {
-    let (width, height) = (region.width as usize, region.height as usize);
-    let reach = (width.min(height) / 14).max(1);
-    let is_shade = |x: usize, y: usize| labels[y * width + x] == Some(shade);
-    let solid =
-        |x: usize, y: usize| (y - reach..=y + reach).all(|v| (x - reach..=x + reach).all(|u| is_shade(u, v)));
-    let rows = reach..height.saturating_sub(reach);
-    rows.map(|y| (reach..width.saturating_sub(reach)).filter(|&x| solid(x, y)).count()).sum()
+/// Where one shade shows in a region.
+struct Shade {
+    all: Patch,
+    pixels: usize,
+    /// Without specks and hair lines.
+    body: Patch,
+}
+
+impl Shade {
+    fn of(region: RectPx, labels: &[Option<usize>], shade: usize) -> Self {
+        let all = Patch::from_fn(region, |x, y| {
+            labels[y as usize * region.width as usize + x as usize] == Some(shade)
+        });
+        Self { pixels: all.count(), body: all.opened(1), all }
+    }
+
+    /// How much the shade stands for the object: its pixels that are no mixtures with others, and the area that they
+    /// span. A frame around lettering spans more than what it frames; a thin border spans more than that, but it is few
+    /// pixels.
+    fn merit(&self) -> f32 {
+        let pure = self.all.eroded(1).count() as f32;
+        let spanned = polygon_area_and_centroid(&self.body.hull()).map_or(0.0, |(area, _)| area);
+        // Where nothing is pure the commonest must do.
+        pure * spanned + 1e-6 * self.pixels as f32
+    }
+
+    /// Whether a good part of it lies far from its edge; that grows with the region, so strokes of lettering and borders
+    /// are not solid at any scale.
+    fn is_solid(&self) -> bool {
+        let side = self.all.rect.width.min(self.all.rect.height) as i32;
+        self.all.eroded((side / 14).max(1)).count() as f32 >= 0.3 * self.pixels as f32
+    }
+
+    fn lies_inside(&self, outline: &Patch) -> bool {
+        let outside = self.body.without(outline).count() as f32;
+        outside <= OUTSIDE_PART * self.body.count() as f32
+    }
 }
 
 /// Whether `other` is `main` under more or less light: nearly proportional colours.
