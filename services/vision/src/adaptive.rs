@@ -17,6 +17,7 @@ pub(crate) mod patch;
 mod segment;
 mod soft_edge;
 mod tracing;
+mod window;
 
 pub(crate) use candidate::{Candidate, Finder, Search};
 pub(crate) use coarse::Coarse;

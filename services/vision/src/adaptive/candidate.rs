@@ -8,6 +8,7 @@ use super::likeness::Likeness;
 use super::patch::Patch;
 use super::segment::{self, Parts};
 use super::soft_edge::{self, Edge};
+use super::window;
 use crate::bitmask::BitMask;
 use crate::components::{Component, Components};
 use crate::frame::Frame;
@@ -23,6 +24,8 @@ const PARTS_REACH: f32 = 0.5;
 
 /// Signs whose parts fill this much of their hull are filled.
 const FILLED_SOLIDITY: f32 = 0.55;
+/// Blocks that fill this much of their hull have no gaps.
+const WHOLE_SOLIDITY: f32 = 0.8;
 /// Seeds larger than this show an outline, px.
 const DISC_SIZE_PX: u32 = 20;
 /// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
@@ -167,9 +170,31 @@ fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
     let seen = segment::object(search.frame, seed, search.likeness, parts)?;
     let form = Form::of(&seen);
     let sign = search.landmark.shape.is_sign() && form.solidity >= FILLED_SOLIDITY;
-    let object = if sign { seen.convex() } else { seen };
+    let (object, form) = match search.landmark.shape {
+        _ if sign => (seen.convex(), form),
+        ShapeClass::Block => whole_block(seen, form),
+        _ => (seen, form),
+    };
     let edge = if sign { border(search, &object) } else { Edge::Plain };
     measured(search, object, &form, edge)
+}
+
+/// A block whose face is another colour within a frame of its own is whole when the frame goes all around, or nearly so:
+/// something may cover a corner, or a gap let the background in. Faces of blocks are convex.
+fn whole_block(seen: Patch, form: Form) -> (Patch, Form) {
+    if form.solidity >= WHOLE_SOLIDITY {
+        return (seen, form);
+    }
+    let whole = seen.convex();
+    let border = whole.without(&whole.eroded(1));
+    let near = seen.dilated((0.04 * (whole.count() as f32).sqrt()).round().max(1.0) as i32);
+    let open = border.without(&near).count() as f32 / border.count().max(1) as f32;
+    // The emptier the hull, the plainer that it is a frame: two blocks side by side are more than half full.
+    if open > 0.5 * (1.0 - form.solidity) {
+        return (seen, form);
+    }
+    let form = Form { solidity: 1.0 - open, ..Form::of(&whole) };
+    (whole, form)
 }
 
 /// A sign too small to show its outline, near a seed.
@@ -192,7 +217,7 @@ fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
 
 fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Option<Candidate> {
     let (centroid, area_px2) = soft_edge::centroid_and_area(search.frame, &object, edge)?;
-    let (window_px, observed) = choose::best_window(search, &object, area_px2)?;
+    let (window_px, observed) = window::best(search, &object, area_px2)?;
     let score = choose::score(search, &object, form, area_px2, &observed);
     let cut = object.touches_border(search.frame.width(), search.frame.height());
     let gain = search.likeness.nearest(observed.mean).gain;

@@ -14,9 +14,6 @@ const FACE_SCALE: f32 = 0.65;
 const RESOLVED_AREA_PX2: f32 = 110.0;
 /// A rectangle, far away and askew, fills this much of the smallest one around it.
 const FULL_RECTANGLE: f32 = 0.84;
-/// The largest window, samples of the doubled grid.
-const LARGEST_WINDOW_2X: i32 = 48;
-
 /// The form of an object.
 pub(crate) struct Form {
     /// Area over the area of the convex hull, 0..1.
@@ -84,50 +81,6 @@ fn elongation(object: &Patch) -> f32 {
     ((half + root) / (half - root).max(1e-3)).sqrt() as f32
 }
 
-/// The window on the object that is nearest to the descriptor, and its statistics. Its side follows the object's.
-pub(crate) fn best_window(search: &Search<'_>, object: &Patch, area_px2: f32) -> Option<(u16, ColorStats)> {
-    let side = ((0.42 * area_px2.sqrt()) as i32).clamp(1, LARGEST_WINDOW_2X / 2);
-    let step = (side / 2).max(1);
-    let mut best: Option<(f32, ColorStats)> = None;
-    let bounds = object.bounds()?;
-    let (left, top) = ((bounds.x - object.rect.x) as i32, (bounds.y - object.rect.y) as i32);
-    for y in (top..top + bounds.height as i32).step_by(step as usize) {
-        for x in (left..left + bounds.width as i32).step_by(step as usize) {
-            let corners = [(0, 0), (side - 1, 0), (0, side - 1), (side - 1, side - 1)];
-            if !corners.iter().all(|(u, v)| object.get(x + u, y + v)) {
-                continue;
-            }
-            let stats = window_stats(search, object, (x, y), side);
-            let excess = search.likeness.nearest(stats.mean).excess + 0.01 * stats.variance[0].sqrt();
-            if best.as_ref().is_none_or(|(least, _)| excess < *least) {
-                best = Some((excess, stats));
-            }
-        }
-    }
-    best.map(|(_, stats)| (2 * side as u16, stats))
-}
-
-fn window_stats(search: &Search<'_>, object: &Patch, (x, y): (i32, i32), side: i32) -> ColorStats {
-    stats(search, object, (y..y + side).flat_map(|v| (x..x + side).map(move |u| (u, v))))
-}
-
-/// Mean and population variance of these places of the object's patch.
-fn stats(search: &Search<'_>, object: &Patch, places: impl Iterator<Item = (i32, i32)>) -> ColorStats {
-    let (mut n, mut sum, mut squares) = (0.0_f32, [0.0_f32; 3], [0.0_f32; 3]);
-    for (x, y) in places {
-        let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
-        for c in 0..3 {
-            let level = f32::from(pixel[c]);
-            sum[c] += level;
-            squares[c] += level * level;
-        }
-        n += 1.0;
-    }
-    let mean = sum.map(|s| s / n.max(1.0));
-    let variance = std::array::from_fn(|c| (squares[c] / n.max(1.0) - mean[c] * mean[c]).max(0.0));
-    ColorStats { mean, variance }
-}
-
 /// How much the object looks like the landmark, 0..1.
 pub(crate) fn score(
     search: &Search<'_>,
@@ -172,7 +125,7 @@ fn face_pixels<'a>(search: &'a Search<'_>, object: &'a Patch) -> impl Iterator<I
 }
 
 /// By how many tolerances the observed variance exceeds the descriptor's, camera noise taken out.
-fn variance_excess(search: &Search<'_>, observed: &ColorStats) -> f32 {
+pub(super) fn variance_excess(search: &Search<'_>, observed: &ColorStats) -> f32 {
     let over = |shade: &ColorStats, c: usize| {
         let tolerance = search.landmark.tolerance.variance[c].max(50.0);
         ((observed.variance[c] - search.noise_variance[c] - shade.variance[c]).max(0.0) / tolerance - 1.0)

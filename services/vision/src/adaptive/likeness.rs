@@ -11,6 +11,10 @@ const FULL_SEARCH_GAIN: f32 = 1.45;
 /// The same while an object is followed.
 const FOLLOWED_GAIN: f32 = 1.22;
 
+/// Under other light than the descriptor's a colour is known less well, since no camera is linear: this part of the
+/// brightest channel for each unit by which the gain differs from 1.
+const WIDENING: f32 = 0.12;
+
 /// A shade is vivid when its channels differ by this part of the largest.
 const VIVID: f32 = 0.4;
 /// Light on a face turned to it, over the most that a whole object gets.
@@ -30,7 +34,10 @@ pub(crate) struct Likeness {
 #[derive(Clone, Copy, Debug)]
 struct Cone {
     shade: [f32; 3],
+    /// Under the light of the descriptor.
     tolerance: [f32; 3],
+    /// What is added to it for each unit by which the gain differs from 1.
+    widening: f32,
     /// `shade / |shade|²`: the dot product with a colour is that colour's gain.
     onto_shade: [f32; 3],
     gain: (f32, f32),
@@ -66,6 +73,7 @@ impl Likeness {
             Cone {
                 shade: shade.mean,
                 tolerance: std::array::from_fn(tolerance),
+                widening: WIDENING * shade.mean.iter().copied().fold(0.0, f32::max),
                 onto_shade: shade.mean.map(|m| m / norm2),
                 gain: (gain / factor, gain * factor),
             }
@@ -156,7 +164,8 @@ impl Likeness {
 impl Cone {
     fn compare(&self, color: [f32; 3]) -> Match {
         let gain = self.gain_of(color);
-        let off = |c: usize| (color[c] - gain * self.shade[c]).abs() / self.tolerance[c];
+        let wider = self.widening * (gain - 1.0).abs();
+        let off = |c: usize| (color[c] - gain * self.shade[c]).abs() / (self.tolerance[c] + wider);
         Match { gain, excess: off(0).max(off(1)).max(off(2)) }
     }
 
@@ -176,15 +185,22 @@ impl Cone {
     #[inline(always)]
     fn holds(&self, color: [f32; 3]) -> bool {
         let gain = self.gain_of(color);
-        let off = |c: usize| (color[c] - gain * self.shade[c]).abs();
+        let wider = self.widening * (gain - 1.0).abs();
+        let off = |c: usize| (color[c] - gain * self.shade[c]).abs() - wider;
         (off(0) <= self.tolerance[0]) & (off(1) <= self.tolerance[1]) & (off(2) <= self.tolerance[2])
     }
 
     /// The least and the greatest level of each channel within the cone.
     fn bounds(&self) -> [(f32, f32); 3] {
+        // Both bounds are piecewise linear in the gain, with a corner at 1.
         let (low, high) = self.gain;
+        let corners = [low, high, 1.0_f32.clamp(low, high)];
         std::array::from_fn(|c| {
-            (low * self.shade[c] - self.tolerance[c], high * self.shade[c] + self.tolerance[c])
+            corners.iter().fold((f32::MAX, f32::MIN), |(least, most), gain| {
+                let (level, reach) =
+                    (gain * self.shade[c], self.tolerance[c] + self.widening * (gain - 1.0).abs());
+                (least.min(level - reach), most.max(level + reach))
+            })
         })
     }
 

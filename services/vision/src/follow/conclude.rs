@@ -15,8 +15,10 @@ const FIRST_SCORE: f32 = 0.30;
 const FURTHER_SCORE: f32 = 0.5;
 /// and this part of the best one's score.
 const FURTHER_PART: f32 = 0.75;
-/// and this part of the area of the one that is known best.
+/// and this part of the area of the one that is known best: it may be three times as far away,
 const FURTHER_SIZE: f32 = 0.12;
+/// or ten times when it is a sign, which is known by more than its colour.
+const FURTHER_SIGN_SIZE: f32 = 0.01;
 /// A known object below this part of the best one's score is a look-alike.
 const LOOK_ALIKE_PART: f32 = 0.6;
 /// Further objects below this score are doubtful.
@@ -63,11 +65,12 @@ fn welcome(
     outcomes: &mut Vec<LandmarkOutcome>,
 ) {
     let usual = usual_look(state);
+    let least_size = if landmark.shape.is_sign() { FURTHER_SIGN_SIZE } else { FURTHER_SIZE };
     let mut least_score = if state.tracks.is_empty() { FIRST_SCORE } else { FURTHER_SCORE };
     let mut next = further.into_iter().peekable();
     while let Some(candidate) = next.next() {
         let least = least_score.max(FURTHER_PART * best_score.max(usual.score));
-        if candidate.score < least || candidate.area_px2 < FURTHER_SIZE * usual.area_px2 {
+        if candidate.score < least || candidate.area_px2 < least_size * usual.area_px2 {
             continue;
         }
         if state.tracks.len() >= scene.options.max_instances as usize {

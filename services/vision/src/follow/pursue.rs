@@ -20,6 +20,13 @@ const SLIVER: f32 = 0.12;
 /// Seeds looked at closely in a gate and in the whole frame.
 const SEEDS: (usize, usize) = (4, 12);
 
+/// Whether more than one object was ever seen that looks like the landmark.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Company {
+    Alone,
+    Others,
+}
+
 /// One followed object in this frame.
 pub(super) struct Pursuit {
     pub(super) prediction: Prediction,
@@ -63,8 +70,9 @@ pub(super) fn landmark<P: StageProbe>(
     for found in pursuits.iter().filter_map(|pursuit| pursuit.found.as_ref()) {
         further.retain(|candidate| !found.covers(candidate.centroid) && !candidate.covers(found.centroid));
     }
+    let company = if state.next_instance > 1 { Company::Others } else { Company::Alone };
     for (track, pursuit) in state.tracks.iter().zip(&mut pursuits) {
-        reacquire(track, pursuit, &mut further);
+        reacquire(track, company, pursuit, &mut further);
     }
     staged(probe, || conclude(scene, landmark, state, pursuits, further, &mut tools.tracer))
 }
@@ -135,22 +143,28 @@ fn anywhere(
     Some(finder.candidates(&scene.search(landmark, region, &likeness, gain, SEEDS.1)))
 }
 
-/// Takes up a lost object where the whole frame shows one that can be it.
-fn reacquire(track: &Track, pursuit: &mut Pursuit, further: &mut Vec<Candidate>) {
+/// Takes up a lost object where the whole frame shows one that can be it: far away only where no other one was ever seen
+/// that could be mistaken for it.
+fn reacquire(track: &Track, company: Company, pursuit: &mut Pursuit, further: &mut Vec<Candidate>) {
     if pursuit.found.is_some() {
         return;
     }
+    let size_px = pursuit.prediction.area_px2.sqrt();
     let [xx, _, yy] = pursuit.prediction.covariance_px2;
+    let sigma_px = (xx + yy).sqrt();
     let lost = (track.misses + 1) as f32;
-    let reach_px = 2.0 * pursuit.prediction.area_px2.sqrt() + 4.0 * (xx + yy).sqrt() + 12.0 * lost;
+    let reach_px = match company {
+        Company::Alone => 2.0 * size_px + 4.0 * sigma_px + 12.0 * lost,
+        Company::Others => size_px + sigma_px.min(size_px),
+    };
+    let off_px = |candidate: &Candidate| pursuit.prediction.centroid.distance_px(candidate.centroid);
     let possible = |candidate: &Candidate| {
-        let off_px = pursuit.prediction.centroid.distance_px(candidate.centroid);
         let size = (candidate.area_px2 / pursuit.prediction.area_px2.max(1.0)).ln();
         // What comes out from behind something, or into the picture, shows less of itself.
         let partly = candidate.cut || track.misses > 1;
         let smallest = if partly { -2.5 } else { -0.6 };
         (smallest..0.6 + 0.02 * lost).contains(&size)
-            && off_px <= reach_px
+            && off_px(candidate) <= reach_px
             && candidate.score >= 0.6 * track.score
             && !(candidate.cut && candidate.area_px2 < SLIVER * track.whole_area_px2)
     };
@@ -160,7 +174,6 @@ fn reacquire(track: &Track, pursuit: &mut Pursuit, further: &mut Vec<Candidate>)
         pursuit.rival = further.first().map_or(0.0, |next| next.score);
     } else {
         let alike = further.iter().filter(|candidate| candidate.score >= 0.6 * track.score);
-        let off_px = |candidate: &&Candidate| pursuit.prediction.centroid.distance_px(candidate.centroid);
         let nearest = alike.min_by(|a, b| off_px(a).total_cmp(&off_px(b)));
         pursuit.elsewhere = nearest.map(|candidate| candidate.centroid);
     }
