@@ -104,6 +104,14 @@ impl Face {
         until(path, || Some(self.json(path)).filter(&wanted))
     }
 
+    /// Asks again and again whether the vehicle is ready, until the answer, of whatever status, satisfies `wanted`.
+    ///
+    /// # Panics
+    /// When it never does.
+    pub fn readiness_once(&self, wanted: impl Fn(&Value) -> bool) -> Value {
+        until("/readyz", || serde_json::from_slice(&self.get("/readyz").body).ok().filter(&wanted))
+    }
+
     /// Begins to read an answer without end.
     ///
     /// # Panics

@@ -10,3 +10,4 @@ mod documented_commands;
 mod fleet;
 mod landmarks;
 mod recorder;
+mod tls;

@@ -11,6 +11,7 @@ use axum::{Extension, Json, Router};
 use http_face::{Cameras, Check, Counters, Events, Picture, Problem, documents, health, metrics_text, page};
 use ingest::camera_thread::Registered;
 use recording::{Command, Journal};
+use runtime::link_trouble;
 use runtime::session::{Mode, is_router_connected};
 use tokio::sync::watch;
 use vision::LandmarkSet;
@@ -132,10 +133,7 @@ impl Face {
     async fn checks(&self) -> Vec<Check> {
         let mut checks = vec![match self.connected().await {
             true => Check::pass("router", "connected"),
-            false => Check::fail(
-                "router",
-                "no router is connected; is `waymark router` running where zenoh.connect says?",
-            ),
+            false => Check::fail("router", link_trouble::no_router()),
         }];
         checks.extend(self.stations.iter().map(|station| match station.liveness() {
             Ok(age) => Check::pass(

@@ -10,6 +10,7 @@ use http_face::{Check, Counters, documents, health, metrics_text, page};
 use metrics::{counter, gauge};
 use metrics_exporter_prometheus::PrometheusBuilder;
 use runtime::Identity;
+use runtime::link_trouble;
 use runtime::session::is_router_connected;
 use tokio::sync::watch;
 use waymark_proto::documents::{landmark_document, set_document};
@@ -66,10 +67,7 @@ impl Face {
 async fn ready(State(face): Shared) -> Response {
     let router = match is_router_connected(&face.session).await {
         true => Check::pass("router", "connected"),
-        false => Check::fail(
-            "router",
-            "no router is connected; is `waymark router` running where zenoh.connect says?",
-        ),
+        false => Check::fail("router", link_trouble::no_router()),
     };
     health(&[router])
 }

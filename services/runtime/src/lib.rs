@@ -6,6 +6,7 @@
 pub mod clock;
 pub mod config;
 pub mod identity;
+pub mod link_trouble;
 pub mod presence;
 pub mod reply;
 pub mod session;

@@ -7,6 +7,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use zenoh::{Config, Session};
 
+use crate::link_trouble;
+
 /// A process's place in the Zenoh network.
 ///
 /// A vehicle's processes are routers that usually listen nowhere: unlike clients they start whether or not anybody can
@@ -162,7 +164,10 @@ impl SessionSettings {
         // Zenoh keeps the time itself where it waits for a router; this is for whatever else takes long.
         match tokio::time::timeout(timeout + Duration::from_secs(1), zenoh::open(config)).await {
             Ok(Ok(session)) => Ok(session),
-            Ok(Err(error)) => Err(SessionError::Open { place: self.place(), reason: words(&error) }),
+            Ok(Err(error)) => {
+                let reason = link_trouble::newest().unwrap_or_else(|| words(&error));
+                Err(SessionError::Open { place: self.place(), reason })
+            }
             Err(_) => Err(SessionError::Timeout { place: self.place(), timeout_s: timeout.as_secs_f64() }),
         }
     }

@@ -4,9 +4,13 @@ use std::io::IsTerminal;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use tracing_subscriber::EnvFilter;
-use tracing_subscriber::filter::ParseError;
+use tracing::Level;
+use tracing_subscriber::filter::{ParseError, Targets};
+use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::util::{SubscriberInitExt, TryInitError};
+use tracing_subscriber::{EnvFilter, Layer, fmt};
+
+use crate::link_trouble::{self, LinkTrouble};
 
 /// What a line of log looks like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -67,20 +71,22 @@ impl LogSettings {
     }
 }
 
-/// Starts logging on standard error, for the whole process.
+/// Starts logging on standard error, for the whole process. What Zenoh says about failed connections is kept for
+/// [`link_trouble::newest`], whether or not the filter lets it through.
 ///
 /// # Errors
 /// When the filter is none, or the process logs already.
 pub fn start_logging(settings: &LogSettings) -> Result<(), TelemetryError> {
-    let filter = settings.env_filter()?;
-    let lines = tracing_subscriber::fmt()
-        .with_env_filter(filter)
-        .with_ansi(std::io::stderr().is_terminal())
-        .with_writer(std::io::stderr);
-    match settings.format {
-        LogFormat::Text => lines.finish().try_init()?,
-        LogFormat::Json => lines.json().finish().try_init()?,
-    }
+    let lines = fmt::layer().with_ansi(std::io::stderr().is_terminal()).with_writer(std::io::stderr);
+    let lines = match settings.format {
+        LogFormat::Text => lines.boxed(),
+        LogFormat::Json => lines.json().boxed(),
+    };
+    let of_connecting = Targets::new().with_target(link_trouble::SPEAKER, Level::DEBUG);
+    tracing_subscriber::registry()
+        .with(lines.with_filter(settings.env_filter()?))
+        .with(LinkTrouble::default().with_filter(of_connecting))
+        .try_init()?;
     Ok(())
 }
 
