@@ -18,6 +18,7 @@ mod sure;
 mod survey;
 
 pub use lanes::Lanes;
+pub(crate) use lanes::Work;
 
 use crate::bitmask::BitMask;
 use crate::doubled_grid::DoubledGrid;

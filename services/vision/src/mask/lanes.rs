@@ -8,7 +8,7 @@
 use crate::adaptive::{Coarse, Likeness, like};
 
 /// Something that may be compiled for any instruction set: every function down to its loops is `inline(always)`.
-pub(super) trait Work {
+pub(crate) trait Work {
     fn run(self);
 }
 
@@ -58,7 +58,7 @@ impl Lanes {
     }
 
     /// Does `work` with these instructions.
-    pub(super) fn run(self, work: impl Work) {
+    pub(crate) fn run(self, work: impl Work) {
         match self.0 {
             Set::Baseline => work.run(),
             // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
