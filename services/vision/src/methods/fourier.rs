@@ -63,6 +63,12 @@ impl Spectrum {
         }
     }
 
+    /// Makes this the product of two spectra.
+    pub(super) fn set_product(&mut self, one: &Self, other: &Self) {
+        self.bins.clear();
+        self.bins.extend(one.bins.iter().zip(&other.bins).map(|(one, other)| one * other));
+    }
+
     /// Adds the product of two spectra.
     pub(super) fn add_product(&mut self, one: &Self, other: &Self) {
         for (bin, (one, other)) in self.bins.iter_mut().zip(one.bins.iter().zip(&other.bins)) {

@@ -4,6 +4,7 @@
 //! The sum over products comes from Fourier transforms (eq. 2.8), the windows' means and variances from running sums in
 //! whole numbers. In colour all three channels' sums are added before the division, as OpenCV's `TM_CCOEFF_NORMED` does.
 
+mod levels;
 mod template;
 mod windows;
 
@@ -12,11 +13,9 @@ use crate::geometry::{PointPx, RectPx, SizePx};
 
 use super::fourier::{Fourier, Spectrum, fast_length};
 use super::plane::Plane;
+use levels::Levels;
 use template::Template;
 use windows::WindowSums;
-
-/// A window whose variance, in levels² over all its samples together, is not above this is flat: nothing can be said of it.
-const FLAT: f64 = 0.5;
 
 /// What of the pictures is compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,6 +74,16 @@ pub enum NccError {
         /// The scale.
         scale: f32,
     },
+    /// At a scale it is larger than any picture.
+    #[error(
+        "at scale {scale} the template is {side} pixels long; at most {LARGEST_SIDE} are allowed: give a smaller scale"
+    )]
+    TooLarge {
+        /// The scale.
+        scale: f32,
+        /// The longer side in pixels.
+        side: u32,
+    },
     /// All its pixels are equal, so every window is as alike as any other.
     #[error("at scale {scale} all pixels of the template are equal; choose one with some structure")]
     Flat {
@@ -95,6 +104,8 @@ pub enum NccError {
 
 /// Scales above this are refused: they are a mistake, and cost memory.
 const LARGEST_SCALE: f32 = 64.0;
+/// Sums down the columns of windows that are higher would not fit.
+const LARGEST_SIDE: u32 = 65_535;
 
 /// A template at its scales, with the memory to search frame after frame.
 #[derive(Clone, Debug)]
@@ -102,6 +113,7 @@ pub struct Ncc {
     colours: Colours,
     templates: Vec<Template>,
     fourier: Option<Fourier>,
+    levels: Levels,
     frame: Vec<Spectrum>,
     product: Spectrum,
     sums: WindowSums,
@@ -128,6 +140,7 @@ impl Ncc {
             colours: options.colours,
             templates: options.scales.iter().map(at_scale).collect::<Result<_, _>>()?,
             fourier: None,
+            levels: Levels::default(),
             frame: Vec::new(),
             product: Spectrum::default(),
             sums: WindowSums::default(),
@@ -142,7 +155,7 @@ impl Ncc {
         self.transform(frame, region);
         let mut best: Option<Match> = None;
         for number in 0..self.templates.len() {
-            self.correlate(number, frame, region);
+            self.correlate(number);
             let Some((x, y, score)) = self.surface.maximum() else { continue };
             if best.is_none_or(|best| score > best.score) {
                 let Template { size, scale, .. } = self.templates[number];
@@ -163,7 +176,7 @@ impl Ncc {
         let region = region.unwrap_or(RectPx::whole(frame.size())).clipped_to(frame.size());
         if let Some(region) = region {
             self.transform(frame, region);
-            self.correlate(0, frame, region);
+            self.correlate(0);
         }
         &self.surface
     }
@@ -176,18 +189,17 @@ impl Ncc {
             self.templates.iter_mut().for_each(|template| template.spectra.clear());
         }
         let Some(fourier) = &mut self.fourier else { return };
+        self.levels.read(frame, region, self.colours);
         self.frame.resize_with(self.colours.channels(), Spectrum::default);
         for (channel, spectrum) in self.frame.iter_mut().enumerate() {
-            let fill = |y: usize, row: &mut [f32]| {
-                let pixels = &frame.row(region.y + y as u32)[3 * region.x as usize..];
-                template::levels(self.colours, channel, pixels, row);
-            };
+            let fill = |y: usize, row: &mut [f32]| self.levels.centred(channel, y as u32, row);
             fourier.forward_rows(region.height as usize, region.width as usize, fill, spectrum);
         }
     }
 
     /// Makes `surface` that of one template.
-    fn correlate(&mut self, number: usize, frame: &Frame, region: RectPx) {
+    fn correlate(&mut self, number: usize) {
+        let region = self.levels.size();
         let template = &mut self.templates[number];
         let SizePx { width, height } = template.size;
         let places = SizePx {
@@ -202,25 +214,14 @@ impl Ncc {
         self.surface.reset(places);
         template.transform(fourier);
         template.correlate(&self.frame, &mut self.product);
-        let columns = places.width as usize;
-        let values = self.surface.values_mut();
+        self.sums.begin(&self.levels, template.size);
+        let (norm, columns) = (template.norm as f32, places.width as usize);
         fourier.inverse_rows(&mut self.product, places.height as usize, |y, row| {
-            values[y * columns..][..columns].copy_from_slice(&row[..columns]);
+            let scores = self.surface.row_mut(y as u32);
+            scores.copy_from_slice(&row[..columns]);
+            self.sums.divide(&self.levels, y as u32, norm, scores);
         });
-        self.sums.begin(frame, region, template.size, self.colours);
-        for y in 0..places.height {
-            let variances = self.sums.row(frame, y);
-            for (value, &variance) in self.surface.row_mut(y).iter_mut().zip(variances) {
-                *value =
-                    if variance > FLAT { score(f64::from(*value), variance, template.norm) } else { 0.0 };
-            }
-        }
     }
-}
-
-/// γ from its numerator and the two sums of squared deviations.
-fn score(numerator: f64, variance: f64, norm: f64) -> f32 {
-    (numerator / (variance.sqrt() * norm)).clamp(-1.0, 1.0) as f32
 }
 
 #[cfg(test)]

@@ -6,9 +6,9 @@ use crate::methods::Border;
 use crate::methods::fourier::{Fourier, Spectrum};
 use crate::methods::interpolate::Interpolation;
 use crate::methods::low_pass::gaussian;
-use crate::methods::plane::{Intensity, Plane, luma};
+use crate::methods::plane::{Intensity, Plane};
 
-use super::{Colours, NccError};
+use super::{Colours, LARGEST_SIDE, NccError};
 
 /// A template at one scale, its mean taken away.
 #[derive(Clone, Debug)]
@@ -33,6 +33,9 @@ impl Template {
         let size = SizePx { width: side(template.width()), height: side(template.height()) };
         if size.width == 0 || size.height == 0 {
             return Err(NccError::Empty { scale });
+        }
+        if size.width.max(size.height) > LARGEST_SIDE {
+            return Err(NccError::TooLarge { scale, side: size.width.max(size.height) });
         }
         let deviations: Vec<Plane> = intensities
             .iter()
@@ -59,8 +62,7 @@ impl Template {
     pub(super) fn correlate(&self, frame: &[Spectrum], product: &mut Spectrum) {
         for (channel, (frame, template)) in frame.iter().zip(&self.spectra).enumerate() {
             if channel == 0 {
-                product.clone_from(frame);
-                product.multiply(template);
+                product.set_product(frame, template);
             } else {
                 product.add_product(frame, template);
             }
@@ -93,15 +95,4 @@ fn conjugate_spectrum(fourier: &mut Fourier, plane: &Plane) -> Spectrum {
         *bin = bin.conj();
     }
     spectrum
-}
-
-/// The levels of one channel of a row of pixels, counted from the middle of the scale so that sums stay small.
-pub(super) fn levels(colours: Colours, channel: usize, pixels: &[u8], levels: &mut [f32]) {
-    for (level, pixel) in levels.iter_mut().zip(pixels.as_chunks::<3>().0) {
-        let value = match colours {
-            Colours::Grey => luma(*pixel),
-            Colours::Rgb => pixel[channel],
-        };
-        *level = f32::from(value) - 128.0;
-    }
 }

@@ -36,7 +36,7 @@ fn slowly(frame: &Frame, template: &Frame, colours: Colours, (x, y): (u32, u32))
     let (f, h) = (samples(frame, x, y).concat(), samples(template, 0, 0).concat());
     let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let variance = sum(&f, &f);
-    if variance <= FLAT { 0.0 } else { sum(&f, &h) / (variance * sum(&h, &h)).sqrt() }
+    if variance <= windows::FLAT { 0.0 } else { sum(&f, &h) / (variance * sum(&h, &h)).sqrt() }
 }
 
 #[test]

@@ -1,69 +1,156 @@
-//! Means and variances of the windows of a frame, as sums of whole numbers.
+//! Variances of the windows of a region, from running sums in whole numbers, and the scores that follow from them.
+//!
+//! From one row of windows to the next every column gains the pixel that enters and loses the one that leaves. Running
+//! totals over the columns then give each window by one difference.
 
-use crate::frame::Frame;
-use crate::geometry::{RectPx, SizePx};
-use crate::methods::plane::luma;
+use crate::geometry::SizePx;
+use crate::mask::{Lanes, Work};
 
-use super::Colours;
+use super::levels::Levels;
+
+/// A window's Σ(f − f̄)², in levels² over all its samples, that is not above this belongs to equal levels: nothing can be
+/// said of it.
+pub(super) const FLAT: f64 = 0.5;
 
 /// Σ(f − f̄)² of the windows of a region, row after row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct WindowSums {
-    colours: Colours,
-    region: RectPx,
+    lanes: Lanes,
     window: SizePx,
-    /// For each channel and column the sums of level and squared level under the window.
-    columns: Vec<[Vec<u64>; 2]>,
+    channels: Vec<Columns>,
     variances: Vec<f64>,
+}
+
+/// One channel's sums over the pixels of each column that lie under the windows, and their running totals, which begin
+/// with 0. A column's fit because windows are at most 65,535 pixels high.
+#[derive(Clone, Debug, Default)]
+struct Columns {
+    levels: Vec<u32>,
+    squares: Vec<u32>,
+    level_totals: Vec<u64>,
+    square_totals: Vec<u64>,
 }
 
 impl WindowSums {
     /// Prepares for windows of that size, which must fit the region.
-    pub(super) fn begin(&mut self, frame: &Frame, region: RectPx, window: SizePx, colours: Colours) {
-        (self.colours, self.region, self.window) = (colours, region, window);
-        self.columns.clear();
-        self.columns.resize_with(colours.channels(), || [0, 1].map(|_| vec![0; region.width as usize]));
-        for row in 0..window.height {
-            self.add(frame, row, 1);
+    pub(super) fn begin(&mut self, levels: &Levels, window: SizePx) {
+        self.window = window;
+        let width = levels.size().width as usize;
+        self.channels.resize_with(levels.channels(), Columns::default);
+        for (number, columns) in self.channels.iter_mut().enumerate() {
+            columns.clear(width);
+            for row in 0..window.height {
+                self.lanes.run(Enter { columns, row: levels.row(number, row) });
+            }
         }
+        self.variances.resize(width + 1 - window.width as usize, 0.0);
     }
 
-    /// Σ(f − f̄)², over all channels, of the windows whose first row is `y`; rows must come in order, from 0.
-    pub(super) fn row(&mut self, frame: &Frame, y: u32) -> &[f64] {
-        if y > 0 {
-            self.add(frame, y - 1, -1);
-            self.add(frame, y + self.window.height - 1, 1);
-        }
-        let width = self.window.width as usize;
+    /// Makes `scores`, which hold the numerators of eq. 2.22 of the windows whose first row is `y`, the quotients: `norm` is
+    /// √Σ(h − h̄)². Rows must come in order, from 0.
+    pub(super) fn divide(&mut self, levels: &Levels, y: u32, norm: f32, scores: &mut [f32]) {
+        self.variances.fill(0.0);
         let samples = f64::from(self.window.width) * f64::from(self.window.height);
-        self.variances.clear();
-        self.variances.resize(self.region.width as usize + 1 - width, 0.0);
-        for [levels, squares] in &self.columns {
-            let (mut sum, mut square): (u64, u64) =
-                (levels[..width].iter().sum(), squares[..width].iter().sum());
-            for (x, variance) in self.variances.iter_mut().enumerate() {
-                if x > 0 {
-                    sum = sum + levels[x + width - 1] - levels[x - 1];
-                    square = square + squares[x + width - 1] - squares[x - 1];
-                }
-                *variance += square as f64 - sum as f64 * (sum as f64 / samples);
+        let window = self.window.width as usize;
+        for (number, columns) in self.channels.iter_mut().enumerate() {
+            if y > 0 {
+                let leaving = levels.row(number, y - 1);
+                let entering = levels.row(number, y + self.window.height - 1);
+                self.lanes.run(Descend { columns, entering, leaving });
             }
+            self.lanes.run(AddVariances { columns, window, samples, variances: &mut self.variances });
         }
-        &self.variances
+        self.lanes.run(Divide { scores, variances: &self.variances, norm });
     }
+}
 
-    /// Adds a row of the region to the columns, or takes it away (−1).
-    fn add(&mut self, frame: &Frame, row: u32, count: i64) {
-        let pixels = &frame.row(self.region.y + row)[3 * self.region.x as usize..];
-        for (channel, [levels, squares]) in self.columns.iter_mut().enumerate() {
-            for ((sum, square), pixel) in levels.iter_mut().zip(squares).zip(pixels.as_chunks::<3>().0) {
-                let level = match self.colours {
-                    Colours::Grey => luma(*pixel),
-                    Colours::Rgb => pixel[channel],
-                };
-                *sum = sum.wrapping_add_signed(count * i64::from(level));
-                *square = square.wrapping_add_signed(count * i64::from(level) * i64::from(level));
-            }
+impl Columns {
+    fn clear(&mut self, width: usize) {
+        for sums in [&mut self.levels, &mut self.squares] {
+            sums.clear();
+            sums.resize(width, 0);
+        }
+        for totals in [&mut self.level_totals, &mut self.square_totals] {
+            totals.clear();
+            totals.resize(width + 1, 0);
+        }
+    }
+}
+
+struct Enter<'a> {
+    columns: &'a mut Columns,
+    row: &'a [u8],
+}
+
+impl Work for Enter<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let sums = self.columns.levels.iter_mut().zip(&mut self.columns.squares);
+        for ((sum, square), &level) in sums.zip(self.row) {
+            let level = u32::from(level);
+            (*sum, *square) = (*sum + level, *square + level * level);
+        }
+    }
+}
+
+struct Descend<'a> {
+    columns: &'a mut Columns,
+    entering: &'a [u8],
+    leaving: &'a [u8],
+}
+
+impl Work for Descend<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let sums = self.columns.levels.iter_mut().zip(&mut self.columns.squares);
+        for ((sum, square), (&new, &old)) in sums.zip(self.entering.iter().zip(self.leaving)) {
+            let (new, old) = (u32::from(new), u32::from(old));
+            *sum = (*sum + new) - old;
+            *square = (*square - old * old) + new * new;
+        }
+    }
+}
+
+/// Adds the windows' Σf² − (Σf)²/n.
+struct AddVariances<'a> {
+    columns: &'a mut Columns,
+    window: usize,
+    samples: f64,
+    variances: &'a mut [f64],
+}
+
+impl Work for AddVariances<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Columns { levels, squares, level_totals, square_totals } = self.columns;
+        let (mut level_total, mut square_total) = (0, 0);
+        let totals = level_totals[1..].iter_mut().zip(&mut square_totals[1..]);
+        for ((level_after, square_after), (&level, &square)) in totals.zip(levels.iter().zip(&*squares)) {
+            (level_total, square_total) = (level_total + u64::from(level), square_total + u64::from(square));
+            (*level_after, *square_after) = (level_total, square_total);
+        }
+        let (count, one_sample) = (self.variances.len(), 1.0 / self.samples);
+        let (left, right) = (&level_totals[..count], &level_totals[self.window..][..count]);
+        let (square_left, square_right) = (&square_totals[..count], &square_totals[self.window..][..count]);
+        for x in 0..count {
+            let (sum, square) = ((right[x] - left[x]) as f64, (square_right[x] - square_left[x]) as f64);
+            self.variances[x] += square - sum * sum * one_sample;
+        }
+    }
+}
+
+struct Divide<'a> {
+    scores: &'a mut [f32],
+    variances: &'a [f64],
+    norm: f32,
+}
+
+impl Work for Divide<'_> {
+    #[inline(always)]
+    fn run(self) {
+        for (score, &variance) in self.scores.iter_mut().zip(self.variances) {
+            let quotient = (*score / ((variance as f32).sqrt() * self.norm)).clamp(-1.0, 1.0);
+            *score = if variance > FLAT { quotient } else { 0.0 };
         }
     }
 }
