@@ -4,9 +4,11 @@
 //! is what a vehicle finds. Nothing here prints: results are values, or go to a writer that the caller gives.
 
 pub mod again;
+pub mod chart;
 mod chosen_pictures;
 pub mod diff;
 pub mod drive;
+pub mod experiments;
 pub mod export;
 pub mod figures;
 pub mod follow_choice;
@@ -15,6 +17,7 @@ pub mod landmark_file;
 pub mod learn;
 pub mod lesson;
 pub mod overlays;
+mod page;
 pub mod parquet_table;
 pub mod recorded;
 pub mod region;

@@ -2,7 +2,6 @@
 //! chapter of results, the detection of each landmark over time, the frames worth looking at, losses and gaps.
 
 mod appendix;
-mod html;
 mod plots;
 mod section;
 mod shots;
@@ -13,9 +12,10 @@ use std::path::Path;
 
 use recording::RecordingError;
 
+use crate::chart::ChartError;
 use crate::drive::Drive;
 use crate::figures::Figures;
-use html::Page;
+use crate::page::Page;
 
 /// Why there is no report.
 #[derive(Debug, thiserror::Error)]
@@ -24,8 +24,8 @@ pub enum ReportError {
     #[error(transparent)]
     Recording(#[from] RecordingError),
     /// A plot cannot be drawn.
-    #[error("cannot draw a plot: {0}")]
-    Plot(String),
+    #[error(transparent)]
+    Chart(#[from] ChartError),
 }
 
 /// A recording's report.

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use vision::{LandmarkOutcome, PointPx};
+use vision::{LandmarkOutcome, PointPx, Sighting};
 
 use crate::figures::Spread;
 use crate::truth::{TrueObject, Truth};
@@ -27,8 +27,13 @@ impl Claim {
     /// What an outcome claims, if anything.
     #[must_use]
     pub fn of(outcome: &LandmarkOutcome) -> Option<Self> {
-        let seen = outcome.result.as_ref().ok()?;
-        Some(Self { centre: seen.centroid, area_px2: seen.area_px2, score: seen.score })
+        outcome.result.as_ref().ok().map(Self::from)
+    }
+}
+
+impl From<&Sighting> for Claim {
+    fn from(seen: &Sighting) -> Self {
+        Self { centre: seen.centroid, area_px2: seen.area_px2, score: seen.score }
     }
 }
 

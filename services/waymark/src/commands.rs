@@ -6,6 +6,7 @@ pub(crate) mod completion;
 pub(crate) mod config;
 pub(crate) mod demo;
 pub(crate) mod doctor;
+pub(crate) mod experiments;
 pub(crate) mod explain;
 pub(crate) mod follower;
 pub(crate) mod landmark;
@@ -32,6 +33,7 @@ pub(crate) fn run(cli: Cli) -> Result<Ending, Failure> {
         Command::Router(args) => router::run(&args),
         Command::Landmark(command) => landmark::run(command, console),
         Command::Recording(command) => recording::run(command, console),
+        Command::Experiments(args) => experiments::run(&args, console),
         Command::Explain(args) => explain::run(&args),
         Command::Register(args) => register::run(&args, console),
         Command::Doctor(args) => doctor::run(&args, console),

@@ -1,8 +1,8 @@
 //! The table of the thesis's Appendices B and C: a row for each frame.
 
-use super::html::{Page, escaped};
 use crate::drive::CameraDrive;
 use crate::figures::observations;
+use crate::page::{Page, escaped};
 
 /// Rows of a table; the rest of a longer drive is for `waymark recording export`.
 const MOST_ROWS: usize = 5_000;

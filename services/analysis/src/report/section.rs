@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::html::{Page, escaped, or_dash};
-use super::plots::{Series, over_frames, path};
+use super::plots::{Course, over_frames, path};
 use super::shots::Shots;
 use super::{ReportError, appendix, tables, timeline};
 use crate::drive::CameraDrive;
 use crate::figures::{CameraFigures, Figures, LandmarkFigures, Observation, observations};
+use crate::page::{Page, or_dash};
 
 pub(super) fn title(file: &Path) -> String {
     file.file_name().unwrap_or_default().to_string_lossy().into_owned()
@@ -56,9 +56,9 @@ fn landmark(page: &mut Page, figures: &LandmarkFigures, drive: &CameraDrive) -> 
         .map(|(_, (x, y))| (f64::from(x), f64::from(y)))
         .collect();
     let size = seen.first().map(|seen| seen.outcome.frame_size).unwrap_or_default();
-    figure(page, &path("Centre in the picture; ring: first sighting", size, &centres)?);
+    page.drawing(&path("Centre in the picture; ring: first sighting", size, centres).svg()?, "");
     for series in series(&seen) {
-        figure(page, &over_frames(&series)?);
+        page.drawing(&over_frames(series).svg()?, "");
     }
     page.raw("</div>");
     appendix::write(page, drive, &figures.id);
@@ -66,9 +66,9 @@ fn landmark(page: &mut Page, figures: &LandmarkFigures, drive: &CameraDrive) -> 
 }
 
 /// X, Y and Z over the frames, as Figures 4.8 and 4.9.
-fn series(seen: &[Observation<'_>]) -> [Series; 3] {
+fn series(seen: &[Observation<'_>]) -> [Course; 3] {
     let values =
-        |title: &str, of: fn(&vision::Sighting) -> f32, prior: fn(&vision::Prediction) -> f32| Series {
+        |title: &str, of: fn(&vision::Sighting) -> f32, prior: fn(&vision::Prediction) -> f32| Course {
             title: title.to_owned(),
             measured: measured(seen, of).map(|(frame, value)| (frame, f64::from(value))).collect(),
             predicted: seen
@@ -93,16 +93,4 @@ fn measured<'a, T>(
 /// The frame's number; in its stream, where its picture is not in the recording.
 fn number(seen: &Observation<'_>) -> f64 {
     seen.frame.number.unwrap_or(seen.outcome.sequence) as f64
-}
-
-fn figure(page: &mut Page, svg: &str) {
-    page.raw(&format!("<figure>{svg}</figure>"));
-}
-
-/// A picture with its caption.
-pub(super) fn picture(page: &mut Page, jpeg_base64: &str, caption: &str) {
-    let caption = escaped(caption);
-    page.raw(&format!(
-        "<figure><img alt=\"{caption}\" src=\"data:image/jpeg;base64,{jpeg_base64}\"><figcaption>{caption}</figcaption></figure>"
-    ));
 }

@@ -11,11 +11,10 @@ use recording::RecordingError;
 use vision::frame::encode::{Quality, encode_jpeg};
 use vision::overlay::{Layers, draw};
 
-use super::html::Page;
-use super::section::picture;
 use crate::chosen_pictures::ChosenPictures;
 use crate::drive::{CameraDrive, Drive};
 use crate::figures::{Observation, observations};
+use crate::page::Page;
 use crate::recorded::RecordedOutcomes;
 use crate::score::Claim;
 use crate::thumbnail::smaller;
@@ -105,7 +104,7 @@ impl CameraShots {
 
     fn show(&self, page: &mut Page, number: u64, caption: &str) {
         if let Some(jpeg) = self.pictures.get(&number) {
-            picture(page, jpeg, caption);
+            page.picture("image/jpeg", jpeg, caption);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Tables of figures.
 
-use super::html::{Page, or_dash, percent, rounded};
 use crate::figures::{CameraFigures, Figures, LandmarkFigures, Spread};
+use crate::page::{Page, escaped, or_dash, percent, rounded};
 
 /// How often each landmark was seen, and how well.
 pub(super) fn landmarks(page: &mut Page, camera: &CameraFigures) {
@@ -120,7 +120,7 @@ pub(super) fn index(page: &mut Page, reports: &[(String, Figures)]) {
     let links: String = reports
         .iter()
         .map(|(file, figures)| {
-            let (file, name) = (super::html::escaped(file), super::html::escaped(&figures.recording));
+            let (file, name) = (escaped(file), escaped(&figures.recording));
             format!("<li><a href=\"{file}\">{name}</a></li>")
         })
         .collect();

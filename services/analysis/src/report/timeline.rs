@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::html::{Page, escaped};
 use crate::drive::CameraDrive;
+use crate::page::{Page, escaped};
 
 const WIDTH: f64 = 1000.0;
 

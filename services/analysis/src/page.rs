@@ -1,16 +1,16 @@
-//! Markup.
+//! HTML pages that need nothing beside themselves.
 
 use std::fmt::Display;
 
-const STYLE: &str = include_str!("style.css");
+const STYLE: &str = include_str!("page/style.css");
 
 /// A page under construction.
-pub(super) struct Page {
+pub(crate) struct Page {
     text: String,
 }
 
 impl Page {
-    pub(super) fn new(title: &str) -> Self {
+    pub(crate) fn new(title: &str) -> Self {
         let title = escaped(title);
         Self {
             text: format!(
@@ -22,21 +22,21 @@ impl Page {
     }
 
     /// Adds markup as it is.
-    pub(super) fn raw(&mut self, markup: &str) {
+    pub(crate) fn raw(&mut self, markup: &str) {
         self.text.push_str(markup);
         self.text.push('\n');
     }
 
-    pub(super) fn heading(&mut self, level: u8, text: &str) {
+    pub(crate) fn heading(&mut self, level: u8, text: &str) {
         self.raw(&format!("<h{level}>{}</h{level}>", escaped(text)));
     }
 
-    pub(super) fn paragraph(&mut self, text: &str) {
+    pub(crate) fn paragraph(&mut self, text: &str) {
         self.raw(&format!("<p>{}</p>", escaped(text)));
     }
 
     /// A table; columns of numbers stand to the right.
-    pub(super) fn table(
+    pub(crate) fn table(
         &mut self,
         caption: &str,
         head: &[&str],
@@ -65,7 +65,25 @@ impl Page {
         self.raw("</tbody></table></div>");
     }
 
-    pub(super) fn finish(mut self) -> String {
+    /// A drawing in a box of its own.
+    pub(crate) fn drawing(&mut self, svg: &str, caption: &str) {
+        let caption = if caption.is_empty() {
+            String::new()
+        } else {
+            format!("<figcaption>{}</figcaption>", escaped(caption))
+        };
+        self.raw(&format!("<figure>{svg}{caption}</figure>"));
+    }
+
+    /// A picture with its caption, its file within the page.
+    pub(crate) fn picture(&mut self, media_type: &str, base64: &str, caption: &str) {
+        let caption = escaped(caption);
+        self.raw(&format!(
+            "<figure><img alt=\"{caption}\" src=\"data:{media_type};base64,{base64}\"><figcaption>{caption}</figcaption></figure>"
+        ));
+    }
+
+    pub(crate) fn finish(mut self) -> String {
         self.text.push_str("</main>\n</html>\n");
         self.text
     }
@@ -76,7 +94,7 @@ fn is_number(cell: &str) -> bool {
 }
 
 /// Text that is safe within an element and within a quoted attribute.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
@@ -91,12 +109,12 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// The value, or a dash where there is none.
-pub(super) fn or_dash(value: Option<impl Display>) -> String {
+pub(crate) fn or_dash(value: Option<impl Display>) -> String {
     value.map_or_else(|| "–".to_owned(), |value| value.to_string())
 }
 
 /// A figure with a sensible number of places.
-pub(super) fn rounded(value: f64) -> String {
+pub(crate) fn rounded(value: f64) -> String {
     match value.abs() {
         size if size >= 1000.0 => format!("{value:.0}"),
         size if size >= 100.0 => format!("{value:.1}"),
@@ -104,7 +122,7 @@ pub(super) fn rounded(value: f64) -> String {
     }
 }
 
-pub(super) fn percent(rate: Option<f64>) -> String {
+pub(crate) fn percent(rate: Option<f64>) -> String {
     or_dash(rate.map(|rate| format!("{:.1} %", 100.0 * rate)))
 }
 
