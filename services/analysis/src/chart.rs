@@ -16,13 +16,16 @@ const SIZE_PX: (u32, u32) = (560, 300);
 /// Points of a series; of a longer one every so many-th is drawn.
 const MOST_POINTS: usize = 1_500;
 
+/// More names than these would cover the data; the page tells them instead.
+const MOST_NAMED: usize = 5;
+
 /// Axes and words; the style sheet of the page knows this colour and [`GRID`], and changes them on dark pages.
 const SOFT: RGBColor = RGBColor(91, 102, 117);
 const GRID: RGBColor = RGBColor(228, 232, 238);
 
 /// The colours of series, which colour-blind readers can tell apart (after Okabe and Ito) and which show on light and
 /// on dark paper.
-const PALETTE: [RGBColor; 8] = [
+const PALETTE: [RGBColor; 9] = [
     RGBColor(31, 111, 214),
     RGBColor(224, 110, 20),
     RGBColor(0, 150, 110),
@@ -31,7 +34,14 @@ const PALETTE: [RGBColor; 8] = [
     RGBColor(60, 165, 220),
     RGBColor(190, 60, 50),
     RGBColor(125, 125, 125),
+    RGBColor(110, 80, 200),
 ];
+
+/// The colour of the series with that number.
+pub(crate) fn series_colour(number: usize) -> [u8; 3] {
+    let RGBColor(red, green, blue) = PALETTE[number % PALETTE.len()];
+    [red, green, blue]
+}
 
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,17 +130,17 @@ impl Chart {
     /// As an SVG element.
     pub(crate) fn svg(&self) -> Result<String, ChartError> {
         let mut svg = String::new();
-        let drawn = self.draw(SVGBackend::with_string(&mut svg, SIZE_PX).into_drawing_area());
+        let drawn = self.draw(&SVGBackend::with_string(&mut svg, SIZE_PX).into_drawing_area());
         drawn.map_err(|error| ChartError { title: self.title.clone(), reason: error.to_string() })?;
         Ok(svg)
     }
 
-    fn draw(&self, root: Area<'_>) -> Result<(), Box<dyn Error>> {
+    fn draw(&self, root: &Area<'_>) -> Result<(), Box<dyn Error>> {
         root.fill(&WHITE)?;
         let points = || self.series.iter().flat_map(|series| &series.points);
         let x = extent(&self.x.extent, points().map(|point| point.0), 0.0);
         let y = extent(&self.y.extent, points().map(|point| point.1), 0.05);
-        let mut axes = ChartBuilder::on(&root)
+        let mut axes = ChartBuilder::on(root)
             .caption(&self.title, ("sans-serif", 15).into_font().color(&SOFT))
             .margin(10)
             .x_label_area_size(36)
@@ -140,7 +150,8 @@ impl Chart {
         for (series, colour) in self.series.iter().zip(PALETTE.iter().cycle()) {
             draw_series(&mut axes, series, *colour)?;
         }
-        if self.series.iter().any(|series| !series.name.is_empty()) {
+        let named = self.series.iter().filter(|series| !series.name.is_empty()).count();
+        if (1..=MOST_NAMED).contains(&named) {
             axes.configure_series_labels()
                 .position(SeriesLabelPosition::UpperRight)
                 .background_style(WHITE.mix(0.8))

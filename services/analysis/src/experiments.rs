@@ -13,8 +13,10 @@ mod chapter4;
 mod conclusions;
 mod document;
 mod drive;
+mod edges;
 mod lab;
 mod leftmost;
+mod noise;
 mod picture;
 mod registry;
 mod sampled;
@@ -91,6 +93,18 @@ pub enum ExperimentError {
     /// A picture cannot be decoded again.
     #[error(transparent)]
     Decode(#[from] vision::frame::decode::DecodeError),
+    /// Pictures of two sizes.
+    #[error(transparent)]
+    SizesDiffer(#[from] vision::methods::SizesDiffer),
+    /// A picture without pixels.
+    #[error(transparent)]
+    NoPixels(#[from] vision::methods::fourier::NoPixels),
+    /// A template that correlates with nothing.
+    #[error(transparent)]
+    Ncc(#[from] vision::methods::ncc::NccError),
+    /// Control points that give no map.
+    #[error(transparent)]
+    ControlPoints(#[from] vision::methods::control_points::ControlPointsError),
     /// A picture of an impossible size.
     #[error(transparent)]
     Size(#[from] vision::frame::SizeMismatch),

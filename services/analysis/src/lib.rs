@@ -6,6 +6,7 @@
 pub mod again;
 pub mod chart;
 mod chosen_pictures;
+pub mod compare;
 pub mod diff;
 pub mod drive;
 pub mod experiments;
@@ -25,7 +26,9 @@ pub mod register;
 pub mod report;
 pub mod row;
 pub mod score;
+mod sketch;
 pub mod stage_times;
+mod straight_lines;
 pub mod strip;
 pub mod table;
 pub mod thumbnail;

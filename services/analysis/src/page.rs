@@ -4,6 +4,9 @@ use std::fmt::Display;
 
 const STYLE: &str = include_str!("page/style.css");
 
+/// Columns with a cell of more characters are broken into lines.
+const LONGEST_UNBROKEN: usize = 44;
+
 /// A page under construction.
 pub(crate) struct Page {
     text: String,
@@ -35,7 +38,7 @@ impl Page {
         self.raw(&format!("<p>{}</p>", escaped(text)));
     }
 
-    /// A table; columns of numbers stand to the right.
+    /// A table; columns of numbers stand to the right, long texts are broken.
     pub(crate) fn table(
         &mut self,
         caption: &str,
@@ -47,8 +50,15 @@ impl Page {
             let mut cells = rows.iter().filter_map(|row| row.get(column));
             !rows.is_empty() && cells.all(|cell| is_number(cell))
         };
-        let class: Vec<&str> =
-            (0..head.len()).map(|column| if is_numeric(column) { " class=\"n\"" } else { "" }).collect();
+        let is_prose = |column: usize| {
+            rows.iter().filter_map(|row| row.get(column)).any(|cell| cell.chars().count() > LONGEST_UNBROKEN)
+        };
+        let class = |column: usize| match (is_numeric(column), is_prose(column)) {
+            (true, _) => " class=\"n\"",
+            (false, true) => " class=\"t\"",
+            (false, false) => "",
+        };
+        let class: Vec<&str> = (0..head.len()).map(class).collect();
         let cell =
             |tag: &str, (text, class): (&str, &&str)| format!("<{tag}{class}>{}</{tag}>", escaped(text));
         self.text.push_str("<div class=\"wide\"><table>\n");

@@ -1,6 +1,6 @@
-//! Pictures made smaller, for people to look at.
+//! Pictures made smaller, for people to look at, and parts of them.
 
-use vision::Frame;
+use vision::{Frame, RectPx};
 
 /// The picture at most `width_px` wide, each pixel the mean of those it stands for.
 #[must_use]
@@ -20,6 +20,15 @@ pub fn smaller(frame: &Frame, width_px: u32) -> Frame {
     }
     // As many pixels as the size says.
     Frame::from_rgb(width_px, height_px, rgb).unwrap_or_else(|_| frame.clone())
+}
+
+/// The part of the picture under `region`, as far as it lies inside.
+#[must_use]
+pub fn part(frame: &Frame, region: RectPx) -> Frame {
+    let RectPx { x, y, width, height } = region.clipped_to(frame.size()).unwrap_or_default();
+    let rows = (y..y + height).map(|row| &frame.row(row)[3 * x as usize..3 * (x + width) as usize]);
+    // As many pixels as the size says.
+    Frame::from_rgb(width, height, rows.flatten().copied().collect()).unwrap_or_default()
 }
 
 /// Where each of `to` pixels begins among `from`, and where the last ends.
@@ -42,6 +51,13 @@ fn mean(frame: &Frame, columns: std::ops::Range<u32>, rows: std::ops::Range<u32>
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_part_is_clipped() {
+        let frame = Frame::from_rgb(3, 2, (0..18).collect()).unwrap();
+        let right = part(&frame, RectPx { x: 2, y: 0, width: 9, height: 9 });
+        assert_eq!((right.width(), right.height(), right.rgb()), (1, 2, &[6, 7, 8, 15, 16, 17][..]));
+    }
 
     #[test]
     fn each_pixel_is_a_mean_and_small_pictures_stay() {

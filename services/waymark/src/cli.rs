@@ -3,8 +3,8 @@
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    camera, completion, config, demo, doctor, experiments, explain, follower, landmark, leader, play,
-    recording, register, router,
+    camera, compare, completion, config, demo, doctor, experiments, explain, follower, landmark, leader,
+    play, recording, register, router,
 };
 
 /// What stands below the options.
@@ -40,6 +40,7 @@ pub(crate) enum Command {
     Landmark(landmark::Command),
     Register(register::Args),
     Explain(explain::Args),
+    Compare(compare::Args),
     Experiments(experiments::Args),
     #[command(subcommand)]
     Recording(recording::Command),

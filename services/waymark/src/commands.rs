@@ -2,6 +2,7 @@
 
 mod batch;
 pub(crate) mod camera;
+pub(crate) mod compare;
 pub(crate) mod completion;
 pub(crate) mod config;
 pub(crate) mod demo;
@@ -33,6 +34,7 @@ pub(crate) fn run(cli: Cli) -> Result<Ending, Failure> {
         Command::Router(args) => router::run(&args),
         Command::Landmark(command) => landmark::run(command, console),
         Command::Recording(command) => recording::run(command, console),
+        Command::Compare(args) => compare::run(&args, console),
         Command::Experiments(args) => experiments::run(&args, console),
         Command::Explain(args) => explain::run(&args),
         Command::Register(args) => register::run(&args, console),

@@ -2,6 +2,7 @@
 
 pub(super) mod blocks;
 pub(super) mod disturbances;
+pub(super) mod doubling;
 pub(super) mod green_signs;
 pub(super) mod prediction;
 pub(super) mod printed_tables;

@@ -84,17 +84,21 @@ fn experiment(page: &mut Page, done: &Done) {
 }
 
 fn pictures(page: &mut Page, pictures: &[Picture]) {
-    if pictures.is_empty() {
-        return;
-    }
-    page.raw("<div class=\"grid plots\">");
-    for picture in pictures {
-        match picture {
-            Picture::Svg { svg, caption } => page.drawing(svg, caption),
-            Picture::Pixels { media_type, base64, caption } => page.picture(media_type, base64, caption),
+    let is_drawing = |picture: &&Picture| matches!(picture, Picture::Svg { .. });
+    for (class, wanted) in [("shots", false), ("plots", true)] {
+        let mut shown = pictures.iter().filter(|picture| is_drawing(picture) == wanted).peekable();
+        if shown.peek().is_none() {
+            continue;
         }
+        page.raw(&format!("<div class=\"grid {class}\">"));
+        for picture in shown {
+            match picture {
+                Picture::Svg { svg, caption } => page.drawing(svg, caption),
+                Picture::Pixels { media_type, base64, caption } => page.picture(media_type, base64, caption),
+            }
+        }
+        page.raw("</div>");
     }
-    page.raw("</div>");
 }
 
 fn heading(done: &Done) -> String {

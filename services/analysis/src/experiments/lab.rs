@@ -169,9 +169,17 @@ pub(super) fn score_claims(
     numbers: RangeInclusive<usize>,
     claims: impl Fn(usize) -> Vec<Claim>,
 ) -> Score {
+    score_numbers(drive, id, numbers.map(|number| (number, claims(number))))
+}
+
+/// Scores the claims of some frames, each with its number.
+pub(super) fn score_numbers(
+    drive: &SimulatedDrive,
+    id: &str,
+    claimed: impl IntoIterator<Item = (usize, Vec<Claim>)>,
+) -> Score {
     let (mut truth, mut all) = (Truth::default(), BTreeMap::new());
-    for number in numbers {
-        let claims = claims(number);
+    for (number, claims) in claimed {
         truth.frames.insert(number as u64, drive.meant(number, id, &claims));
         all.insert(number as u64, claims);
     }

@@ -1,8 +1,12 @@
-//! Computed pictures: numbers as grey or as colours, and lines over frames.
+//! Computed pictures: numbers as grey or as colours, flow as lines.
 
-use vision::{Frame, PointPx, RectPx};
+use std::num::NonZeroU16;
+
+use vision::methods::{Flow, Plane};
+use vision::{Frame, PointPx};
 
 use super::ExperimentError;
+use crate::sketch::{dot, line};
 
 /// The picture with every pixel `factor` times as wide and as high.
 pub(super) fn enlarged(frame: &Frame, factor: u32) -> Result<Frame, ExperimentError> {
@@ -11,49 +15,66 @@ pub(super) fn enlarged(frame: &Frame, factor: u32) -> Result<Frame, ExperimentEr
     Ok(Frame::from_rgb(width, height, pixels.collect())?)
 }
 
-/// The part of the picture under `region`, as far as it lies inside.
-pub(super) fn cropped(frame: &Frame, region: RectPx) -> Result<Frame, ExperimentError> {
-    let RectPx { x, y, width, height } = region.clipped_to(frame.size()).unwrap_or_default();
-    let pixels =
-        (y..y + height).flat_map(|row| (x..x + width).flat_map(move |column| frame.pixel(column, row)));
-    Ok(Frame::from_rgb(width, height, pixels.collect())?)
+/// A plane as grey: `black` and what is below is black, `white` and above white.
+pub(super) fn grey(plane: &Plane, black: f32, white: f32) -> Result<Frame, ExperimentError> {
+    let level = |value: f32| (255.0 * (value - black) / (white - black)).round().clamp(0.0, 255.0) as u8;
+    coloured(plane, |value| [level(value); 3])
 }
 
-/// Draws a straight line, `width` pixels wide.
-pub(super) fn line(frame: &mut Frame, from: PointPx, to: PointPx, width: u32, colour: [u8; 3]) {
-    // Two steps a pixel: rounding leaves no gap.
-    let steps = (2.0 * (to.x - from.x).abs().max((to.y - from.y).abs()).ceil()).max(1.0) as u32;
-    for step in 0..=steps {
-        let part = step as f32 / steps as f32;
-        let at = PointPx::new(from.x + part * (to.x - from.x), from.y + part * (to.y - from.y));
-        dot(frame, at, width, colour);
-    }
+/// A plane as colours from blue (its least value) over green and yellow to red (its largest).
+pub(super) fn heat(plane: &Plane) -> Result<Frame, ExperimentError> {
+    let finite = || plane.values().iter().copied().filter(|value| value.is_finite());
+    let (least, most) = (finite().fold(f32::INFINITY, f32::min), finite().fold(f32::NEG_INFINITY, f32::max));
+    let span = (most - least).max(f32::MIN_POSITIVE);
+    coloured(plane, |value| heat_colour((value - least) / span))
 }
 
-/// Draws a square of `width` pixels around a point; what lies outside the picture is left out.
-pub(super) fn dot(frame: &mut Frame, at: PointPx, width: u32, colour: [u8; 3]) {
-    let (columns, rows) = (i64::from(frame.width()), i64::from(frame.height()));
-    let start = |centre: f32| (centre - (width as f32 - 1.0) / 2.0).floor() as i64;
-    for y in start(at.y)..start(at.y) + i64::from(width) {
-        for x in start(at.x)..start(at.x) + i64::from(width) {
-            if (0..columns).contains(&x) && (0..rows).contains(&y) {
-                let place = 3 * (y * columns + x) as usize;
-                frame.rgb_mut()[place..place + 3].copy_from_slice(&colour);
+/// Blue, cyan, green, yellow, red for 0 to 1.
+fn heat_colour(part: f32) -> [u8; 3] {
+    const STOPS: [[f32; 3]; 5] = [
+        [30.0, 50.0, 150.0],
+        [40.0, 160.0, 210.0],
+        [90.0, 190.0, 90.0],
+        [240.0, 220.0, 60.0],
+        [215.0, 40.0, 30.0],
+    ];
+    let place = part.clamp(0.0, 1.0) * (STOPS.len() - 1) as f32;
+    let at = (place as usize).min(STOPS.len() - 2);
+    let mix = place - at as f32;
+    std::array::from_fn(|channel| (STOPS[at][channel] * (1.0 - mix) + STOPS[at + 1][channel] * mix) as u8)
+}
+
+fn coloured(plane: &Plane, colour: impl Fn(f32) -> [u8; 3]) -> Result<Frame, ExperimentError> {
+    let rgb = plane.values().iter().flat_map(|&value| colour(value)).collect();
+    Ok(Frame::from_rgb(plane.width(), plane.height(), rgb)?)
+}
+
+/// The flow as lines over the picture, twice as large: one each `step` pixels, `times` as long as the flow, with a dot
+/// where it begins.
+pub(super) fn arrows(plane: &Plane, flow: &Flow, step: u32, times: f32) -> Result<Frame, ExperimentError> {
+    const ENLARGED: u32 = 2;
+    let mut frame = enlarged(&grey(plane, 0.0, 255.0)?, ENLARGED)?;
+    let scale = ENLARGED as f32;
+    for y in (step / 2..plane.height()).step_by(step as usize) {
+        for x in (step / 2..plane.width()).step_by(step as usize) {
+            let (u, v) = (times * flow.u.get(x, y), times * flow.v.get(x, y));
+            let from = PointPx::new(scale * x as f32, scale * y as f32);
+            if u.hypot(v) >= 1.0 {
+                line(
+                    &mut frame,
+                    from,
+                    PointPx::new(from.x + scale * u, from.y + scale * v),
+                    2,
+                    [255, 190, 40],
+                );
+                dot(&mut frame, from, 4, [220, 60, 30]);
             }
         }
     }
+    Ok(frame)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn lines_end_at_the_border() {
-        let mut frame = Frame::from_rgb(4, 3, vec![0; 36]).unwrap();
-        line(&mut frame, PointPx::new(-5.0, 1.5), PointPx::new(50.0, 1.5), 1, [9, 8, 7]);
-        assert!((0..4).all(|x| frame.pixel(x, 1) == [9, 8, 7]));
-        assert!((0..4).all(|x| frame.pixel(x, 0) == [0; 3]));
-        assert_eq!(enlarged(&frame, 3).unwrap().pixel(0, 4), [9, 8, 7]);
-    }
+/// A window's side.
+pub(super) fn side(px: u16) -> NonZeroU16 {
+    NonZeroU16::new(px).unwrap_or(NonZeroU16::MIN)
 }

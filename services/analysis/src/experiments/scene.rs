@@ -1,5 +1,6 @@
 //! The thesis's synthetic pictures, from its descriptions.
 
+use vision::methods::Plane;
 use vision::{Frame, RectPx, SizePx};
 
 use super::ExperimentError;
@@ -31,6 +32,41 @@ pub(super) fn synthetic() -> Result<Synthetic, ExperimentError> {
         canvas.fill(rect, colour);
     }
     Ok(Synthetic { frame: canvas.frame()?, block, others })
+}
+
+/// Three overlapping shades of rectangles on white, after Figures 2.2 and 2.5.
+pub(super) fn rectangles() -> Result<(Frame, [RectPx; 3]), ExperimentError> {
+    let rects = [
+        RectPx { x: 14, y: 16, width: 60, height: 36 },
+        RectPx { x: 92, y: 24, width: 44, height: 66 },
+        RectPx { x: 26, y: 70, width: 48, height: 34 },
+    ];
+    let mut canvas = Canvas::new(SizePx { width: 160, height: 120 }, WHITE);
+    for (rect, colour) in rects.into_iter().zip([[60; 3], [110; 3], [20; 3]]) {
+        canvas.fill(rect, colour);
+    }
+    Ok((canvas.frame()?, rects))
+}
+
+/// Dark letters on light grey, after Figure 2.1: E, F, H, I, L, T, whose strokes are rectangles.
+pub(super) fn letters() -> Plane {
+    const STROKES: [&[[u32; 4]]; 6] = [
+        &[[0, 0, 6, 40], [0, 0, 24, 6], [0, 17, 20, 6], [0, 34, 24, 6]],
+        &[[0, 0, 6, 40], [0, 0, 24, 6], [0, 17, 20, 6]],
+        &[[0, 0, 6, 40], [18, 0, 6, 40], [0, 17, 24, 6]],
+        &[[9, 0, 6, 40]],
+        &[[0, 0, 6, 40], [0, 34, 24, 6]],
+        &[[0, 0, 24, 6], [9, 0, 6, 40]],
+    ];
+    let is_ink = |x: u32, y: u32| {
+        STROKES.iter().zip(0..).any(|(strokes, number)| {
+            let (left, top) = (14 + 48 * (number % 3), 14 + 56 * (number / 3));
+            strokes.iter().any(|[dx, dy, width, height]| {
+                (left + dx..left + dx + width).contains(&x) && (top + dy..top + dy + height).contains(&y)
+            })
+        })
+    };
+    Plane::from_fn(SizePx { width: 160, height: 120 }, |x, y| if is_ink(x, y) { 50.0 } else { 200.0 })
 }
 
 /// Pixels that rectangles are painted on.

@@ -3,9 +3,11 @@
 #![allow(clippy::unwrap_used)] // in a test, a panic with its place is the report
 
 mod access;
+mod compare;
 mod config;
 mod convoy;
 mod doctor;
+mod experiments;
 mod landmarks;
 mod program;
 mod recordings;

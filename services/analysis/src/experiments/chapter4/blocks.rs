@@ -7,9 +7,9 @@ use crate::chart::{Chart, Mark, Series};
 use crate::experiments::account::{Account, Thesis};
 use crate::experiments::lab::{Followed, Manner, RINK_FRAMES, TEMPLATE_FRAME, score_claims};
 use crate::experiments::leftmost::Leftmost;
-use crate::experiments::picture::cropped;
 use crate::experiments::{ExperimentError, Lab};
 use crate::score::{Claim, Score};
+use crate::thumbnail::part;
 
 /// Frames that are shown, a fifth apart.
 const SHOWN: [usize; 4] = [37, 110, 190, 270];
@@ -48,10 +48,8 @@ fn characteristics(lab: &Lab, id: &str, printed: [(f64, f64); 3]) -> Result<Acco
         window.width, window.height
     );
     let region = lab.drive(SceneKind::Rink)?.region(TEMPLATE_FRAME, id, 1.6)?;
-    account.picture(
-        &cropped(&lab.rink_frame()?, region)?,
-        format!("The {id} block in frame {TEMPLATE_FRAME}"),
-    )?;
+    account
+        .picture(&part(&lab.rink_frame()?, region), format!("The {id} block in frame {TEMPLATE_FRAME}"))?;
     Ok(account)
 }
 

@@ -143,61 +143,24 @@ fn figure(block: Block) -> Result<Account, ExperimentError> {
     let believed = on_track(&all);
     let track: Vec<Row> = all.iter().zip(&believed).filter(|(_, on)| **on).map(|(row, _)| *row).collect();
     let mut account = Account::default();
-    let name = block.name();
     for method in PredictionMethod::ALL {
-        let steps = predicted(method, &all);
-        for axis in 0..2 {
-            let errors = errors(&steps, axis);
-            let note = "all printed rows, false ones included";
-            account.compare(
-                format!("{name} {} RMS, {}", AXES[axis], method.name()),
-                Thesis::Silent,
-                rms(&errors),
-                "px",
-                note,
-            );
-            account.compare(
-                format!("{name} {} median, {}", AXES[axis], method.name()),
-                Thesis::Silent,
-                median(&errors),
-                "px",
-                note,
-            );
-        }
+        let note = "all printed rows, false ones included";
+        compare_errors(&mut account, block, method.name(), &predicted(method, &all), note);
     }
     let gated = predicted(PredictionMethod::Kalman, &track);
-    for axis in 0..2 {
-        let errors = errors(&gated, axis);
-        let note = format!("{} rows on the track, the others kept out by the gate", track.len());
-        account.compare(
-            format!("{name} {} RMS, gated kalman", AXES[axis]),
-            Thesis::Silent,
-            rms(&errors),
-            "px",
-            note.clone(),
-        );
-        account.compare(
-            format!("{name} {} median, gated kalman", AXES[axis]),
-            Thesis::Silent,
-            median(&errors),
-            "px",
-            note,
-        );
-        let largest = Spread::of(&errors).map(|spread| spread.largest);
-        let words = "of the gated Kalman filter on the track; the thesis's is equation 4.1's";
-        account.compare(
-            format!("{name} {} largest error", AXES[axis]),
-            Thesis::Number(20.0),
-            largest,
-            "px",
-            words,
-        );
+    let note = format!("{} rows on the track, the others kept out by the gate", track.len());
+    compare_errors(&mut account, block, "gated kalman", &gated, &note);
+    for (axis, name) in AXES.iter().enumerate().take(2) {
+        let largest = Spread::of(&errors(&gated, axis)).map(|spread| spread.largest);
+        let note = "of the gated Kalman filter on the track; the thesis's is equation 4.1's";
+        let quantity = format!("{} {name} largest error", block.name());
+        account.compare(quantity, Thesis::Number(20.0), largest, "px", note);
     }
     let printed = predicted(PredictionMethod::Printed, &all);
     let x = |steps: &[Step]| rms(&errors(steps, 0)).unwrap_or(f64::NAN);
     account.sentence = format!(
         "Equation 4.1 as printed, which extrapolates backwards, misses X by {:.1} px RMS; taking the last place misses it \
-         by {:.1}, going straight on by {:.1}, and a Kalman filter whose gate keeps {} false rows out by {:.1}.",
+         by {:.1}, going straight on by {:.1}, and a Kalman filter whose gate keeps {} rows out by {:.1}.",
         x(&printed),
         x(&predicted(PredictionMethod::Persistence, &all)),
         x(&predicted(PredictionMethod::ConstantVelocity, &all)),
@@ -208,6 +171,22 @@ fn figure(block: Block) -> Result<Account, ExperimentError> {
         account.chart(&chart(block, axis, &printed, &gated))?;
     }
     Ok(account)
+}
+
+/// RMS and median of a method's errors in X and Y.
+fn compare_errors(account: &mut Account, block: Block, method: &str, steps: &[Step], note: &str) {
+    for (axis, name) in AXES.iter().enumerate().take(2) {
+        let errors = errors(steps, axis);
+        for (what, value) in [("RMS", rms(&errors)), ("median", median(&errors))] {
+            account.compare(
+                format!("{} {name} {what}, {method}", block.name()),
+                Thesis::Silent,
+                value,
+                "px",
+                note,
+            );
+        }
+    }
 }
 
 fn chart(block: Block, axis: usize, printed: &[Step], gated: &[Step]) -> Chart {

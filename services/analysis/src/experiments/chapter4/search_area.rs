@@ -59,7 +59,7 @@ pub(in crate::experiments) fn run(lab: &Lab) -> Result<Account, ExperimentError>
             "",
         );
         told.push(format!(
-            "the {id} block {faster:.1} times as fast, with {:.1} % false instead of {:.1} %",
+            "the {id} block is registered {faster:.1} times as fast, with {:.1} % false instead of {:.1} %",
             100.0 * near.false_rate.unwrap_or(0.0),
             100.0 * whole.false_rate.unwrap_or(0.0)
         ));

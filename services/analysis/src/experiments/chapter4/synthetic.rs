@@ -7,9 +7,11 @@ use vision::{Frame, Landmark, LandmarkOutcome, NoProbe, Outcome, PointPx, ShapeC
 
 use crate::experiments::account::{Account, Thesis};
 use crate::experiments::lab::TEMPLATE_FRAME;
-use crate::experiments::picture::{cropped, enlarged, line};
+use crate::experiments::picture::enlarged;
 use crate::experiments::scene::{RED, Synthetic, synthetic};
 use crate::experiments::{ExperimentError, Lab};
+use crate::sketch::line;
+use crate::thumbnail::part;
 
 /// Table 4.1.
 pub(in crate::experiments) fn characteristics(_: &Lab) -> Result<Account, ExperimentError> {
@@ -103,7 +105,7 @@ pub(in crate::experiments) fn segments(lab: &Lab) -> Result<Account, ExperimentE
         draw(&mut frame, &outcome, Layers::OUTLINE | Layers::SEGMENTS);
     }
     let around = lab.drive(simulator::SceneKind::Rink)?.region(TEMPLATE_FRAME, "red", 3.0)?;
-    account.picture(&cropped(&frame, around)?, "Outline and segments, after Fig 4.4")?;
+    account.picture(&part(&frame, around), "Outline and segments, after Fig 4.4")?;
     Ok(account)
 }
 
