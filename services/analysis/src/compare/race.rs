@@ -235,7 +235,12 @@ fn recorded_truth(
     (!recorded.is_empty()).then(|| Truth { frames: recorded.iter().map(meant).collect() })
 }
 
-/// The box around a sighting: that of its outline, or as large as its area where it has none.
+/// The rim of background around a template, as a part of the object's side and at least in pixels: a template of one
+/// colour alone correlates with nothing, its edge is what it is known by.
+const RIM_PART: f32 = 0.15;
+const LEAST_RIM_PX: f32 = 2.0;
+
+/// The box around a sighting with a rim: that of its outline, or as large as its area where it has none.
 fn extent(seen: &Sighting, frame: &Frame) -> Option<RectPx> {
     let side = seen.area_px2.sqrt();
     let whole = |of: fn(&PointPx) -> f32| {
@@ -244,7 +249,8 @@ fn extent(seen: &Sighting, frame: &Frame) -> Option<RectPx> {
     };
     let (width, height) =
         if seen.outline.is_empty() { (side, side) } else { (whole(|point| point.x), whole(|point| point.y)) };
-    box_around(seen.centroid, width, height, frame.size())
+    let rimmed = |side: f32| side + 2.0 * (RIM_PART * side).max(LEAST_RIM_PX);
+    box_around(seen.centroid, rimmed(width), rimmed(height), frame.size())
 }
 
 /// How many frames an input says that it has.
