@@ -32,6 +32,7 @@ mod storage;
 pub mod summary;
 #[cfg(test)]
 mod testing;
+pub mod timeline;
 pub mod walk;
 mod writer;
 

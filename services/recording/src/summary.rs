@@ -73,6 +73,17 @@ impl Summary {
         self.topics_by_channel.iter().filter(move |(_, known)| *known == topic).map(|(channel, _)| *channel)
     }
 
+    /// The topic of a channel.
+    pub(crate) fn topic_of(&self, channel: u16) -> Option<&str> {
+        self.topics_by_channel.get(&channel).map(String::as_str)
+    }
+
+    /// Whether every chunk that holds messages says where.
+    pub(crate) fn indexes_messages(&self) -> bool {
+        let is_empty = |chunk: &ChunkIndex| chunk.message_end_time == 0;
+        self.chunks.iter().all(|chunk| is_empty(chunk) || !chunk.message_index_offsets.is_empty())
+    }
+
     /// Whether every message can be found through chunk indexes.
     pub(crate) fn indexes_everything(&self) -> bool {
         let chunks = self.statistics.as_ref().map_or(0, |statistics| statistics.chunk_count as usize);
