@@ -40,6 +40,7 @@ pub mod probe;
 pub mod reference;
 pub mod register;
 pub mod score;
+pub mod separation;
 pub mod shape;
 pub mod statistics;
 pub mod timestamp;

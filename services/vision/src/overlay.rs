@@ -8,8 +8,10 @@
 mod layers;
 mod lettering;
 mod pen;
+mod tint;
 
 pub use layers::{Layers, UnknownLayer};
+pub use tint::{adapted, tint};
 
 use lettering::Lettering;
 use pen::{Ink, Pen, StrokeKind};
