@@ -21,6 +21,7 @@ mod metrics;
 mod outbound;
 mod pictures_out;
 mod post;
+mod recordings;
 mod results;
 mod run;
 mod set_file;

@@ -5,12 +5,39 @@ use std::sync::Arc;
 
 use http_face::{Cameras, Counters};
 use ingest::camera_thread::Registered;
-use metrics::{counter, gauge};
+use metrics::{counter, describe_counter, gauge};
 use metrics_exporter_prometheus::PrometheusBuilder;
 
 use crate::counters::LandmarkCounters;
 use crate::station::Station;
 use crate::status::{FleetStatus, VehicleStatus};
+
+/// What each figure is.
+const HELP: [(&str, &str); 20] = [
+    ("waymark_uptime_seconds", "Time since the start."),
+    ("waymark_landmarks", "Landmarks in force."),
+    ("waymark_leader_present", "1 when the leader is announced and was heard within a lease."),
+    ("waymark_leader_missed_manifests_total", "Manifests that the leader sent and that did not arrive."),
+    ("waymark_router_connected", "1 when there is a way to the others."),
+    ("waymark_recorder_failed", "1 when the recorder has failed."),
+    ("waymark_recorder_file_bytes", "Bytes in the file being written."),
+    ("waymark_recorder_lost_messages_total", "Messages offered to the recorder and not stored."),
+    ("waymark_recorder_free_bytes", "Free bytes on the recorder's disk."),
+    ("waymark_clock_offset_seconds", "Another machine's clock minus this one's."),
+    ("waymark_clock_offset_uncertainty_seconds", "How far that may be wrong either way."),
+    ("waymark_frames_registered_total", "Frames that were looked at."),
+    ("waymark_frames_per_second", "Registered frames per second over the last seconds."),
+    ("waymark_frame_age_seconds", "Age of the newest frame since its arrival."),
+    ("waymark_frame_latency_seconds", "From capture to result, of the newest frame."),
+    ("waymark_frames_dropped_total", "Frames that did not make it, by reason."),
+    ("waymark_landmarks_measured", "Landmarks measured in the newest frame."),
+    (
+        "waymark_landmark_messages_ignored_total",
+        "Messages about landmarks that were not followed, by reason.",
+    ),
+    ("waymark_http_encodes_total", "Pictures encoded for viewers."),
+    ("waymark_http_refused_total", "Requests and connections turned away or cut off, by reason."),
+];
 
 /// Everything in the Prometheus text format.
 pub(crate) fn exposition(
@@ -23,6 +50,9 @@ pub(crate) fn exposition(
 ) -> String {
     let recorder = PrometheusBuilder::new().build_recorder();
     metrics::with_local_recorder(&recorder, || {
+        for (name, help) in HELP {
+            describe_counter!(name, help);
+        }
         vehicle(status);
         clocks(fleet);
         stations.iter().for_each(|station| camera(station));

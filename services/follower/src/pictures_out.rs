@@ -1,50 +1,58 @@
-//! Pictures for whoever looks: the newest frame, with or without what was seen in it.
+//! Pictures for whoever looks: a frame, with or without what was seen in it.
 
 use std::sync::Arc;
 
-use fast_image_resize::images::{Image, ImageRef};
-use fast_image_resize::{FilterType, PixelType, ResizeAlg, ResizeOptions, Resizer};
-use http_face::{Format, PictureRequest, Render};
+use http_face::{PictureRequest, Render};
 use ingest::camera_thread::{self, Registered};
-use vision::Frame;
-use vision::frame::encode::{self, Quality};
-use vision::overlay::{self, Layers, UnknownLayer};
+use ingest::view;
+use tokio::sync::watch;
+use vision::overlay::{self, Layers, UnknownLayer, adapted};
+use vision::{Frame, Landmark, LandmarkOutcome, LandmarkSet, Outcome};
 
 /// Names of what can be drawn over a frame.
-pub(crate) const LAYERS: &[&str] = &["outline", "segments", "vector", "prediction", "gate", "labels"];
+pub(crate) const LAYERS: &[&str] = &["mask", "outline", "segments", "vector", "prediction", "gate", "labels"];
+
+/// Drawn before all others, from the pixels themselves.
+const MASK: &str = "mask";
+
+/// The landmarks in force; a mask is only drawn of a descriptor that is still the one that was looked for.
+pub(crate) type Landmarks = watch::Receiver<Arc<LandmarkSet>>;
 
 /// Draws a view of a registered frame.
-pub(crate) fn renderer() -> Arc<Render<Registered>> {
-    Arc::new(render)
+pub(crate) fn renderer(landmarks: Landmarks) -> Arc<Render<Registered>> {
+    Arc::new(move |registered, request| {
+        let frame = camera_thread::decode(&registered.picture).map_err(|error| error.to_string())?;
+        drawn(frame, &registered.outcome, request, &landmarks)
+    })
 }
 
-fn render(registered: &Registered, request: &PictureRequest) -> Result<Vec<u8>, String> {
-    let mut frame = camera_thread::decode(&registered.picture).map_err(|error| error.to_string())?;
-    if let Some(names) = request.layers.as_ref().filter(|names| !names.is_empty()) {
+/// A frame with what was seen in it, as a viewer asked for it; live and recorded pictures are drawn alike.
+pub(crate) fn drawn(
+    mut frame: Frame,
+    outcome: &Outcome,
+    request: &PictureRequest,
+    landmarks: &Landmarks,
+) -> Result<Vec<u8>, String> {
+    let mut names = request.layers.clone().unwrap_or_default();
+    if names.contains(&MASK) {
+        let set = Arc::clone(&landmarks.borrow());
+        overlay::tint(&mut frame, &looked_for(&set, outcome));
+    }
+    names.retain(|name| *name != MASK);
+    if !names.is_empty() {
         let layers: Layers = names.join(",").parse().map_err(|error: UnknownLayer| error.to_string())?;
-        overlay::draw(&mut frame, &registered.outcome, layers);
+        overlay::draw(&mut frame, outcome, layers);
     }
-    let frame = match request.width_px {
-        Some(width_px) if width_px < frame.width() => scaled_to_width(&frame, width_px)?,
-        _ => frame,
-    };
-    let quality = Quality::new(request.quality).map_err(|error| error.to_string())?;
-    match request.format {
-        Format::Jpeg => encode::encode_jpeg(&frame, quality),
-        Format::Png => encode::encode_png(&frame),
-    }
-    .map_err(|error| error.to_string())
+    view::encoded(frame, request)
 }
 
-/// The same picture, smaller.
-fn scaled_to_width(frame: &Frame, width_px: u32) -> Result<Frame, String> {
-    let height_px =
-        (u64::from(frame.height()) * u64::from(width_px) / u64::from(frame.width().max(1))).max(1) as u32;
-    let source = ImageRef::new(frame.width(), frame.height(), frame.rgb(), PixelType::U8x3);
-    let mut smaller = Image::new(width_px, height_px, PixelType::U8x3);
-    let options = ResizeOptions::new().resize_alg(ResizeAlg::Convolution(FilterType::Box));
-    source.map_err(|error| error.to_string()).and_then(|source| {
-        Resizer::new().resize(&source, &mut smaller, &options).map_err(|error| error.to_string())
-    })?;
-    Frame::from_rgb(width_px, height_px, smaller.into_vec()).map_err(|error| error.to_string())
+/// The descriptors as they were compared with this frame: in its light, at the scale of each object.
+fn looked_for(set: &LandmarkSet, outcome: &Outcome) -> Vec<Landmark> {
+    let in_force =
+        |one: &LandmarkOutcome| set.landmarks.iter().find(|landmark| landmark.digest == one.digest);
+    let of_one = |one: &LandmarkOutcome| {
+        let landmark = in_force(one)?;
+        Some(one.adaptation.as_ref().map_or_else(|| landmark.as_ref().clone(), |how| adapted(landmark, how)))
+    };
+    outcome.landmarks.iter().filter(|one| one.instance == 0).filter_map(of_one).collect()
 }

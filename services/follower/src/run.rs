@@ -94,7 +94,7 @@ pub async fn run_on(
     tasks.spawn(watching);
     tasks.spawn(beacon.run(topics, shutdown.clone()));
     tasks.spawn(follow_landmarks(feed, shutdown.clone()));
-    tasks.spawn(serve(listener, web::routes(Arc::clone(&face)), policy, shutdown.clone()));
+    tasks.spawn(serve(listener, web::routes(&face), policy, shutdown.clone()));
     let mut running = Vec::new();
     for post in posts {
         running.push(post.begin(&session, &own, Arc::clone(&face)).await?);

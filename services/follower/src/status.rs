@@ -1,12 +1,13 @@
 //! `/api/v1/status` as people and programs read it (contract section 8). Missing values are `null`, never 0.
 
 use runtime::clock::ClockOffset;
+use schemars::JsonSchema;
 use serde::Serialize;
 use vision::outcome::{LandmarkOutcome, Miss};
 use vision::{ColorStats, Outcome};
 
 /// What one vehicle says of itself.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct VehicleStatus {
     /// The vehicle's id.
     pub vehicle: String,
@@ -29,7 +30,7 @@ pub struct VehicleStatus {
 }
 
 /// The leader as this follower knows it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct LeaderStatus {
     /// The followed vehicle's id.
     pub vehicle: String,
@@ -44,7 +45,7 @@ pub struct LeaderStatus {
 }
 
 /// How far another machine's clock is off.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct ClockStatus {
     /// The other clock minus this machine's, ms.
     pub offset_ms: f64,
@@ -65,14 +66,14 @@ impl From<ClockOffset> for ClockStatus {
 }
 
 /// Everyone who is announced in the fleet, as `/api/v1/fleet` tells it.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct FleetStatus {
     /// By vehicle, role and instance.
     pub members: Vec<FleetMember>,
 }
 
 /// A process of the fleet.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, JsonSchema, Serialize)]
 pub struct FleetMember {
     /// Its vehicle's id.
     pub vehicle: String,
@@ -91,14 +92,14 @@ pub struct FleetMember {
 }
 
 /// The way to the others.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, JsonSchema, Serialize)]
 pub struct RouterStatus {
     /// Whether at least one router is connected; where this vehicle is itself a peer, a router or another peer.
     pub connected: bool,
 }
 
 /// One camera.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct CameraStatus {
     /// The camera's id.
     pub id: String,
@@ -121,7 +122,7 @@ pub struct CameraStatus {
 }
 
 /// Frames that did not make it, by reason.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, JsonSchema, Serialize)]
 pub struct Dropped {
     /// Lost on the way here, by the gaps in their sequence.
     pub missed: u64,
@@ -156,7 +157,7 @@ impl Dropped {
 }
 
 /// One instance of one landmark in the newest frame.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub struct LandmarkStatus {
     /// The landmark's id.
     pub id: String,
@@ -189,7 +190,7 @@ pub struct LandmarkStatus {
 }
 
 /// Six statistics, R, G, B.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, JsonSchema, Serialize)]
 pub struct Statistics {
     /// Means, levels.
     pub mean: [f32; 3],
@@ -198,7 +199,7 @@ pub struct Statistics {
 }
 
 /// Why a landmark was missed.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, JsonSchema, Serialize)]
 pub struct MissStatus {
     /// The miss's name.
     pub reason: &'static str,
@@ -220,7 +221,7 @@ pub struct MissStatus {
 }
 
 /// The recorder.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, JsonSchema, Serialize)]
 pub struct RecorderStatus {
     /// `off`, `recording` or `failed`.
     pub state: &'static str,

@@ -1,5 +1,6 @@
 //! The follower's routes (contract section 8) on the shared web face.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -8,14 +9,18 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Extension, Json, Router};
-use http_face::{Cameras, Check, Counters, Events, Picture, Problem, documents, health, metrics_text, page};
+use http_face::{
+    Api, Cameras, Check, Counters, Documents, Events, Health, Operation, Picture, Problem, health,
+    metrics_text, page,
+};
 use ingest::camera_thread::Registered;
 use recording::{Command, Journal};
 use runtime::link_trouble;
 use runtime::session::{Mode, is_router_connected};
+use serde_json::json;
 use tokio::sync::watch;
 use vision::LandmarkSet;
-use waymark_proto::documents::{landmark_document, set_document};
+use waymark_proto::documents::{LandmarkDocument, SetDocument};
 use zenoh::Session;
 
 use crate::config::FollowerConfig;
@@ -24,6 +29,7 @@ use crate::leader_watch::LeaderWatch;
 use crate::metrics;
 use crate::pictures_out;
 use crate::post::Post;
+use crate::recordings::{self, Shelf};
 use crate::station::Station;
 use crate::status::{FleetStatus, RecorderStatus, RouterStatus, VehicleStatus};
 
@@ -44,24 +50,44 @@ pub(crate) struct Face {
     pub(crate) cameras: Arc<Cameras<Registered>>,
     pub(crate) events: Arc<Events>,
     pub(crate) landmark_counters: Arc<crate::counters::LandmarkCounters>,
+    pub(crate) recordings: PathBuf,
 }
 
 /// All routes of a follower.
-pub(crate) fn routes(face: Arc<Face>) -> Router {
-    let cameras = face.cameras.routes();
-    Router::new()
-        .route("/livez", get(|| async { health(&[Check::pass("process", "answers")]) }))
-        .route("/readyz", get(ready))
-        .route("/metrics", get(metrics))
-        .route("/api/v1/status", get(status))
-        .route("/api/v1/fleet", get(fleet))
-        .route("/api/v1/recorder", get(recorder))
-        .route("/api/v1/recorder/{command}", post(command))
-        .route("/api/v1/events", get(events))
-        .with_state(Arc::clone(&face))
-        .merge(landmarks(face))
-        .merge(cameras)
-        .merge(page())
+pub(crate) fn routes(face: &Arc<Face>) -> Router {
+    let api = Api::new("Waymark follower", env!("CARGO_PKG_VERSION"));
+    let api = face.cameras.routes(service_routes(api, face));
+    let api = recordings::routes(landmarks(api, face), Shelf::new(&face.recordings, face.landmarks.clone()));
+    api.undescribed(page()).finish()
+}
+
+fn service_routes(api: Api, face: &Arc<Face>) -> Api {
+    let shared = || Arc::clone(face);
+    let alive = Operation::get("Whether the process answers").gives::<Health>();
+    let is_ready = Operation::get("Whether everything is well, with a reason for each check")
+        .gives::<Health>()
+        .gives_with::<Health>(503);
+    let figures = Operation::get("Figures for Prometheus").answers("text/plain", json!({ "type": "string" }));
+    let status_of = Operation::get("How the vehicle is").gives::<VehicleStatus>();
+    let fleet_of = Operation::get("Everyone who is announced in the fleet").gives::<FleetStatus>();
+    let recorder_of = Operation::get("How the recorder is").gives::<RecorderStatus>();
+    let commands = json!({ "type": "string", "enum": ["start", "stop", "split"] });
+    let command_of = Operation::post("Tells the recorder to start, to stop, or to begin a new file")
+        .path("command", "What to do", commands)
+        .gives_with::<RecorderStatus>(202)
+        .problem(404, "There is no such command");
+    let events_of =
+        Operation::get("Each registered frame as a server-sent event; Last-Event-ID goes on from there")
+            .answers("text/event-stream", json!({ "type": "string" }))
+            .problem(503, "Too many read them already");
+    api.route("/livez", [alive], get(|| async { health(vec![Check::pass("process", "answers")]) }))
+        .route("/readyz", [is_ready], get(ready).with_state(shared()))
+        .route("/metrics", [figures], get(metrics).with_state(shared()))
+        .route("/api/v1/status", [status_of], get(status).with_state(shared()))
+        .route("/api/v1/fleet", [fleet_of], get(fleet).with_state(shared()))
+        .route("/api/v1/recorder", [recorder_of], get(recorder).with_state(shared()))
+        .route("/api/v1/recorder/{command}", [command_of], post(command).with_state(shared()))
+        .route("/api/v1/events", [events_of], get(events).with_state(shared()))
 }
 
 impl Face {
@@ -74,7 +100,11 @@ impl Face {
         posts: &[Post],
         journal: &Arc<Journal>,
     ) -> Self {
-        let cameras = Cameras::new(config.cameras.clone(), pictures_out::LAYERS, &pictures_out::renderer());
+        let cameras = Cameras::new(
+            config.cameras.clone(),
+            pictures_out::LAYERS,
+            &pictures_out::renderer(feed.landmarks()),
+        );
         Self {
             vehicle: config.vehicle.clone(),
             instance,
@@ -88,6 +118,7 @@ impl Face {
             cameras: Arc::new(cameras),
             events: Arc::new(Events::new(EVENTS_KEPT)),
             landmark_counters: feed.counters(),
+            recordings: config.recorder.directory.clone(),
         }
     }
 
@@ -155,7 +186,7 @@ impl Face {
 type Shared = State<Arc<Face>>;
 
 async fn ready(State(face): Shared) -> Response {
-    health(&face.checks().await)
+    health(face.checks().await)
 }
 
 async fn metrics(State(face): Shared, Extension(refusals): Extension<Arc<Counters>>) -> Response {
@@ -199,15 +230,15 @@ async fn events(State(face): Shared, headers: HeaderMap) -> Result<Response, Pro
 }
 
 /// The landmarks in force.
-fn landmarks(face: Arc<Face>) -> Router {
-    let set = move || Arc::clone(&face.landmarks.borrow());
-    let of_one = set.clone();
-    documents(
-        "landmark",
-        "/api/v1/landmarks",
-        move || set_document(&set()),
-        move |id| {
-            of_one().landmarks.iter().find(|landmark| landmark.id == id).map(|it| landmark_document(it))
-        },
-    )
+fn landmarks(api: Api, face: &Arc<Face>) -> Api {
+    const LANDMARKS: Documents = Documents {
+        kind: "landmark",
+        about_all: "The landmarks that are looked for",
+        about_one: "One of them",
+    };
+    let in_force = face.landmarks.clone();
+    let (all, all_answer) = LANDMARKS.all(move || SetDocument::from(in_force.borrow().as_ref()));
+    let in_force = face.landmarks.clone();
+    let (one, one_answer) = LANDMARKS.one(move |id| LandmarkDocument::in_set(&in_force.borrow(), id));
+    api.route("/api/v1/landmarks", [all], all_answer).route("/api/v1/landmarks/{id}", [one], one_answer)
 }

@@ -1,26 +1,32 @@
 //! The pictures of every camera over HTTP: single ones by long-poll and streams.
 
+mod description;
+
+use crate::api::{Api, Operation};
 use crate::mjpeg::{StreamSlots, stream};
 use crate::parameters::Parameters;
 use crate::pictures::{Picture, PictureFeed};
 use crate::problem::Problem;
 use crate::renditions::{Format, PictureRequest, Render, Renditions};
+use axum::Json;
 use axum::body::Bytes;
 use axum::extract::{Path, State};
 use axum::http::header::CONTENT_TYPE;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Uri};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use axum::{Json, Router};
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::time::Duration;
 
 /// How long a request with `after` waits for a newer picture.
 const LONG_POLL: Duration = Duration::from_secs(5);
 
-const DEFAULT_QUALITY: u8 = 80;
+/// Pictures per second of a stream.
+const RATES_HZ: RangeInclusive<u32> = 1..=60;
 
 /// Every camera's newest picture and its views.
 pub struct Cameras<T> {
@@ -58,14 +64,21 @@ impl<T: Send + Sync + 'static> Cameras<T> {
     }
 
     /// `/api/v1/cameras`, and below it for each camera `frame.jpg`, `overlay.jpg`, `overlay.png` and `stream.mjpeg`.
-    pub fn routes(self: &Arc<Self>) -> Router {
-        Router::new()
-            .route("/api/v1/cameras", get(index::<T>))
-            .route("/api/v1/cameras/{camera}/frame.jpg", get(frame::<T>))
-            .route("/api/v1/cameras/{camera}/overlay.jpg", get(overlay_jpeg::<T>))
-            .route("/api/v1/cameras/{camera}/overlay.png", get(overlay_png::<T>))
-            .route("/api/v1/cameras/{camera}/stream.mjpeg", get(motion::<T>))
-            .with_state(Arc::clone(self))
+    #[must_use]
+    pub fn routes(self: &Arc<Self>, api: Api) -> Api {
+        let shared = || Arc::clone(self);
+        let index_of =
+            Operation::get("Which cameras there are, and which layers can be drawn over their pictures");
+        let bare = description::jpeg("The newest frame", &[]);
+        let drawn = description::jpeg("The newest frame, with what was seen in it", self.layers);
+        let exact = description::png("The same without loss", self.layers);
+        let motion_of = description::stream(self.layers);
+        let at = |name: &str| format!("/api/v1/cameras/{{camera}}/{name}");
+        api.route("/api/v1/cameras", [index_of.gives::<Index>()], get(index::<T>).with_state(shared()))
+            .route(&at("frame.jpg"), [bare], get(frame::<T>).with_state(shared()))
+            .route(&at("overlay.jpg"), [drawn], get(overlay_jpeg::<T>).with_state(shared()))
+            .route(&at("overlay.png"), [exact], get(overlay_png::<T>).with_state(shared()))
+            .route(&at("stream.mjpeg"), [motion_of], get(motion::<T>).with_state(shared()))
     }
 
     fn camera(&self, id: &str) -> Result<&Arc<Camera<T>>, Problem> {
@@ -76,8 +89,16 @@ impl<T: Send + Sync + 'static> Cameras<T> {
 type Shared<T> = State<Arc<Cameras<T>>>;
 
 /// Which cameras there are and which layers can be drawn.
-async fn index<T: Send + Sync + 'static>(State(cameras): Shared<T>) -> Json<Value> {
-    Json(json!({ "cameras": cameras.cameras.keys().collect::<Vec<_>>(), "layers": cameras.layers }))
+#[derive(Serialize, JsonSchema)]
+struct Index {
+    /// Ids.
+    cameras: Vec<String>,
+    /// Names for `layers`.
+    layers: &'static [&'static str],
+}
+
+async fn index<T: Send + Sync + 'static>(State(cameras): Shared<T>) -> Json<Index> {
+    Json(Index { cameras: cameras.cameras.keys().cloned().collect(), layers: cameras.layers })
 }
 
 async fn frame<T: Send + Sync + 'static>(
@@ -114,7 +135,7 @@ async fn single<T: Send + Sync + 'static>(
     let camera = cameras.camera(id)?;
     let mut query = Parameters::parse(uri.query())?;
     let after = query.number("after", 0..=u64::MAX)?;
-    let request = view_asked(&mut query, format, layers)?;
+    let request = PictureRequest::asked(&mut query, format, layers)?;
     query.finish()?;
     let picture = match after {
         Some(sequence) => camera.feed.after(sequence, LONG_POLL).await?,
@@ -131,53 +152,49 @@ async fn motion<T: Send + Sync + 'static>(
 ) -> Result<Response, Problem> {
     let camera = cameras.camera(&id)?;
     let mut query = Parameters::parse(uri.query())?;
-    let fps = query.number("fps", 1..=60_u32)?.unwrap_or(30);
+    let fps = query.number("fps", RATES_HZ)?.unwrap_or(30);
     let layers = match query.text("overlay").as_deref() {
         None | Some("true") => cameras.layers,
         Some("false") => &[],
         Some(other) => return Err(Problem::parameter("overlay", other, "true or false")),
     };
-    let request = view_asked(&mut query, Format::Jpeg, layers)?;
+    let request = PictureRequest::asked(&mut query, Format::Jpeg, layers)?;
     query.finish()?;
     camera.feed.latest()?;
     let slot = cameras.slots.take()?;
     Ok(stream(Arc::clone(camera), request, Duration::from_secs(1) / fps, slot))
 }
 
-/// Reads `width`, `quality` and, where there are layers to choose from, `layers`.
-fn view_asked(
-    query: &mut Parameters,
-    format: Format,
-    layers: &[&'static str],
-) -> Result<PictureRequest, Problem> {
-    let width_px = query.number("width", 16..=3840_u32)?;
-    let quality = match format {
-        Format::Jpeg => query.number("quality", 1..=100_u8)?.unwrap_or(DEFAULT_QUALITY),
-        Format::Png => DEFAULT_QUALITY,
-    };
-    let layers = if layers.is_empty() {
-        None
-    } else {
-        Some(query.choice("layers", layers)?.unwrap_or_else(|| layers.to_vec()))
-    };
-    Ok(PictureRequest { format, layers, width_px, quality })
+fn with_provenance<T>(picture: &Picture<T>, format: Format, bytes: Bytes) -> Response {
+    let mut response = picture_answer(picture.sequence, picture.captured_at_ns, format, bytes);
+    let age = HeaderValue::from(age_ms(picture));
+    response.headers_mut().insert(HeaderName::from_static(AGE), age);
+    response
 }
 
-fn with_provenance<T>(picture: &Picture<T>, format: Format, bytes: Bytes) -> Response {
+/// A picture with what it shows: the frame's number in its stream, and its capture time in ns since the Unix epoch.
+#[must_use]
+pub fn picture_answer(sequence: u64, captured_at_ns: i64, format: Format, bytes: Bytes) -> Response {
     let mut headers = HeaderMap::new();
     headers.insert(CONTENT_TYPE, HeaderValue::from_static(format.content_type()));
-    for (name, value) in provenance(picture) {
-        headers.insert(HeaderName::from_static(name), value);
-    }
+    headers.insert(HeaderName::from_static(SEQUENCE), HeaderValue::from(sequence));
+    headers.insert(HeaderName::from_static(CAPTURED_AT), HeaderValue::from(captured_at_ns));
     (headers, bytes).into_response()
+}
+
+const SEQUENCE: &str = "x-waymark-sequence";
+const CAPTURED_AT: &str = "x-waymark-captured-at";
+const AGE: &str = "x-waymark-age-ms";
+
+fn age_ms<T>(picture: &Picture<T>) -> u64 {
+    u64::try_from(picture.age().as_millis()).unwrap_or(u64::MAX)
 }
 
 /// Which frame a picture shows: sequence, capture time in ns since the Unix epoch, age in ms since it was received.
 pub(crate) fn provenance<T>(picture: &Picture<T>) -> [(&'static str, HeaderValue); 3] {
-    let age_ms = u64::try_from(picture.age().as_millis()).unwrap_or(u64::MAX);
     [
-        ("x-waymark-sequence", HeaderValue::from(picture.sequence)),
-        ("x-waymark-captured-at", HeaderValue::from(picture.captured_at_ns)),
-        ("x-waymark-age-ms", HeaderValue::from(age_ms)),
+        (SEQUENCE, HeaderValue::from(picture.sequence)),
+        (CAPTURED_AT, HeaderValue::from(picture.captured_at_ns)),
+        (AGE, HeaderValue::from(age_ms(picture))),
     ]
 }

@@ -35,7 +35,7 @@ pub fn conditional(request: &HeaderMap, tag: &str, content_type: &'static str, c
 }
 
 /// Weak comparison, as If-None-Match asks (RFC 9110 section 13.1.2).
-fn is_known(request: &HeaderMap, tag: &str) -> bool {
+pub(crate) fn is_known(request: &HeaderMap, tag: &str) -> bool {
     request
         .get_all(IF_NONE_MATCH)
         .iter()

@@ -3,10 +3,11 @@
 use axum::Json;
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// One thing that must be well, and how it is.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Check {
     /// What is checked: `recorder`, `router`, `camera front`.
     pub name: String,
@@ -30,14 +31,18 @@ impl Check {
     }
 }
 
-/// 200 when all checks pass, else 503; the body is `{"status":"ok"|"failing","checks":[{"name","ok","reason"}]}`.
+/// All checks of a service, and what they come to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct Health {
+    /// `ok` or `failing`.
+    pub status: &'static str,
+    /// Each with its reason.
+    pub checks: Vec<Check>,
+}
+
+/// 200 when all checks pass, else 503; the body is a [`Health`].
 #[must_use]
-pub fn health(checks: &[Check]) -> Response {
-    #[derive(Serialize)]
-    struct Health<'a> {
-        status: &'static str,
-        checks: &'a [Check],
-    }
+pub fn health(checks: Vec<Check>) -> Response {
     let well = checks.iter().all(|check| check.ok);
     let (code, status) =
         if well { (StatusCode::OK, "ok") } else { (StatusCode::SERVICE_UNAVAILABLE, "failing") };

@@ -60,6 +60,12 @@ impl<T> PictureFeed<T> {
         self.newest.send_replace(Some(picture));
     }
 
+    /// The newest picture, however old it is.
+    #[must_use]
+    pub fn newest(&self) -> Option<Picture<T>> {
+        self.newest.borrow().clone()
+    }
+
     /// The newest picture, when there is one and it is not stale.
     ///
     /// # Errors

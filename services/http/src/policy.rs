@@ -25,6 +25,8 @@ pub struct Policy {
     pub shutdown_deadline: Duration,
     /// Names accepted in `Host` beside IP literals, `localhost` and the machine's own name.
     pub hosts: Vec<String>,
+    /// Origins of pages elsewhere that may read what is marked [`crate::ForViewers`].
+    pub viewers: Vec<String>,
     /// When present, changes need it.
     pub token: Option<Token>,
 }
@@ -42,6 +44,7 @@ impl Default for Policy {
             max_body_bytes: 1 << 20,
             shutdown_deadline: Duration::from_secs(2),
             hosts: Vec::new(),
+            viewers: Vec::new(),
             token: None,
         }
     }

@@ -5,6 +5,7 @@ use axum::body::Body;
 use axum::http::header::{ALLOW, CONTENT_TYPE, RETRY_AFTER};
 use axum::http::{HeaderValue, Response, StatusCode};
 use axum::response::IntoResponse;
+use schemars::JsonSchema;
 use serde_json::{Map, Value, json};
 use std::time::Duration;
 
@@ -24,6 +25,20 @@ pub struct Problem {
     pub(crate) refusal: Option<Refusal>,
 }
 
+/// What is sent, for descriptions of an interface; further members depend on the problem.
+#[derive(JsonSchema)]
+#[expect(dead_code, reason = "only its schema is of use: documents are put together from members")]
+pub(crate) struct ProblemDocument {
+    /// Always `about:blank`: the status says which kind it is.
+    r#type: String,
+    /// The status in words.
+    title: String,
+    /// The HTTP status code.
+    status: u16,
+    /// What is wrong, and what to do.
+    detail: String,
+}
+
 impl Problem {
     /// A problem with this status; `detail` tells the user what is wrong and what to do.
     #[must_use]
@@ -35,6 +50,12 @@ impl Problem {
     #[must_use]
     pub fn not_found(what: &str) -> Self {
         Self::new(StatusCode::NOT_FOUND, format!("there is no {what}"))
+    }
+
+    /// 500: something of ours failed.
+    #[must_use]
+    pub fn internal(reason: &dyn std::fmt::Display) -> Self {
+        Self::new(StatusCode::INTERNAL_SERVER_ERROR, reason.to_string())
     }
 
     /// 503 with `Retry-After`: something is missing now that may be there later.

@@ -1,10 +1,13 @@
 //! Encoded views of a picture, each made once however many look at it, and none when nobody looks.
 
+use crate::api::{Operation, integer};
+use crate::parameters::Parameters;
 use crate::pictures::Picture;
 use crate::problem::Problem;
 use axum::body::Bytes;
 use axum::http::StatusCode;
 use std::collections::HashMap;
+use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use tokio::sync::{OnceCell, Semaphore};
@@ -20,6 +23,53 @@ pub struct PictureRequest {
     pub width_px: Option<u32>,
     /// JPEG quality, 1..=100.
     pub quality: u8,
+}
+
+const DEFAULT_QUALITY: u8 = 80;
+
+/// Widths that may be asked for.
+const WIDTHS_PX: RangeInclusive<u32> = 16..=3840;
+
+/// JPEG qualities that may be asked for.
+const QUALITIES: RangeInclusive<u8> = 1..=100;
+
+impl PictureRequest {
+    /// Reads `width`, `quality` and, where there are `layers` to choose from, `layers`, all of them when none is named.
+    ///
+    /// # Errors
+    /// 400 when one of them is not allowed.
+    pub fn asked(query: &mut Parameters, format: Format, layers: &[&'static str]) -> Result<Self, Problem> {
+        let width_px = query.number("width", WIDTHS_PX)?;
+        let quality = match format {
+            Format::Jpeg => query.number("quality", QUALITIES)?.unwrap_or(DEFAULT_QUALITY),
+            Format::Png => DEFAULT_QUALITY,
+        };
+        let layers = if layers.is_empty() {
+            None
+        } else {
+            Some(query.choice("layers", layers)?.unwrap_or_else(|| layers.to_vec()))
+        };
+        Ok(Self { format, layers, width_px, quality })
+    }
+
+    /// Says of an operation that it takes `width` and, where there are any, `layers`.
+    #[must_use]
+    pub fn described(operation: Operation, layers: &'static [&'static str]) -> Operation {
+        let scaled =
+            operation.query("width", "Width in pixels; never above the frame's own", integer(&WIDTHS_PX));
+        match layers {
+            [] => scaled,
+            _ => scaled.list("layers", "What to draw; everything unless said otherwise", layers),
+        }
+    }
+}
+
+impl Operation {
+    /// Takes `quality`.
+    #[must_use]
+    pub fn with_quality(self) -> Self {
+        self.query("quality", "JPEG quality", integer(&QUALITIES))
+    }
 }
 
 /// How a picture is encoded.

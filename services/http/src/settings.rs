@@ -18,13 +18,20 @@ pub struct HttpSettings {
     pub token_file: Option<PathBuf>,
     /// Host names that are accepted besides IP addresses, localhost and the machine's name.
     pub hosts: Vec<String>,
+    /// Origins of pages elsewhere that may read recordings, such as `https://app.foxglove.dev`.
+    pub viewers: Vec<String>,
 }
 
 impl HttpSettings {
     /// Reachable from this machine only; port 0 takes a free one.
     #[must_use]
     pub fn on_loopback(port: u16) -> Self {
-        Self { listen: (Ipv4Addr::LOCALHOST, port).into(), token_file: None, hosts: Vec::new() }
+        Self {
+            listen: (Ipv4Addr::LOCALHOST, port).into(),
+            token_file: None,
+            hosts: Vec::new(),
+            viewers: Vec::new(),
+        }
     }
 
     /// What these settings permit.
@@ -33,6 +40,6 @@ impl HttpSettings {
     /// When the token file cannot be used.
     pub fn policy(&self) -> Result<Policy, TokenError> {
         let token = self.token_file.as_deref().map(Token::from_file).transpose()?;
-        Ok(Policy { hosts: self.hosts.clone(), token, ..Policy::default() })
+        Ok(Policy { hosts: self.hosts.clone(), viewers: self.viewers.clone(), token, ..Policy::default() })
     }
 }

@@ -5,6 +5,7 @@ use crate::counters::Refusal;
 use crate::guard::{is_change, judge};
 use crate::policy::Access;
 use crate::problem::{Problem, normalised};
+use crate::viewers::Viewer;
 use axum::Router;
 use axum::body::{Body, Bytes};
 use axum::extract::{Request, State};
@@ -54,6 +55,7 @@ pub(crate) fn wrap(router: Router, shell: Shell) -> Router {
 }
 
 async fn pass(State(shell): State<Shell>, request: Request, next: Next) -> Response {
+    let viewer = Viewer::of(request.headers(), &shell.terms.policy);
     let mut response = match admit(&shell, request).await {
         Ok(request) => answer(&shell, request, next).await,
         Err(problem) => problem.into_response(),
@@ -67,6 +69,9 @@ async fn pass(State(shell): State<Shell>, request: Request, next: Next) -> Respo
         response.headers_mut().insert(WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
     }
     response.headers_mut().insert(ACCESS, HeaderValue::from_static(shell.access.name()));
+    if let Some(viewer) = viewer {
+        viewer.admit(&mut response);
+    }
     secure(response.headers_mut());
     response
 }

@@ -11,3 +11,4 @@ pub mod pictures;
 pub mod recorded;
 pub mod source;
 pub mod video_thread;
+pub mod view;

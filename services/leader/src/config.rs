@@ -7,7 +7,7 @@ use runtime::SessionSettings;
 use runtime::telemetry::LogSettings;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use waymark_proto::keys::VehicleKeys;
+use waymark_proto::keys::{Id, VehicleKeys};
 
 use crate::error::LeaderError;
 use crate::landmark_files::read_landmarks;
@@ -23,6 +23,8 @@ pub struct LeaderConfig {
     /// Landmark files, and directories of them (every `*.json`), published at the start. A landmark that was retired
     /// while the leader ran comes back at the next start as long as its file is listed here.
     pub landmarks: Vec<PathBuf>,
+    /// Cameras of this vehicle that the page shows, so that landmarks can be learned by hand.
+    pub cameras: Vec<String>,
     /// Where the start counter, the set as it was last, and the machine's id are kept.
     pub state_dir: PathBuf,
     /// The web face.
@@ -40,6 +42,7 @@ impl LeaderConfig {
     /// As the leader's start.
     pub fn check(&self) -> Result<(), LeaderError> {
         VehicleKeys::new(&self.fleet, &self.vehicle)?;
+        self.cameras.iter().try_for_each(|camera| Id::new("camera", camera).map(drop))?;
         self.http.policy()?;
         read_landmarks(&self.landmarks)?;
         Ok(())
@@ -52,6 +55,7 @@ impl Default for LeaderConfig {
             fleet: "convoy".to_owned(),
             vehicle: "leader".to_owned(),
             landmarks: Vec::new(),
+            cameras: Vec::new(),
             state_dir: PathBuf::from("state/leader"),
             http: HttpSettings::on_loopback(8081),
             zenoh: SessionSettings::default(),

@@ -46,6 +46,14 @@ pub enum LeaderError {
         /// What the system says.
         source: io::Error,
     },
+    /// A camera's thread cannot be started.
+    #[error("no thread for camera {camera}: {source}")]
+    Thread {
+        /// The camera's id.
+        camera: String,
+        /// What the system says.
+        source: io::Error,
+    },
     /// The token file cannot be used.
     #[error(transparent)]
     Token(#[from] TokenError),

@@ -8,11 +8,14 @@
 mod announcements;
 mod answers;
 pub mod book;
+mod camera_watch;
 pub mod client;
 pub mod config;
 pub mod error;
 pub mod landmark_files;
+mod lessons;
 mod memory;
+mod metrics;
 mod publication;
 mod put_times;
 mod run;

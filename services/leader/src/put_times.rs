@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Puts that are remembered: about a minute, at a manifest and a status a second.
@@ -22,7 +23,7 @@ struct Recent {
 }
 
 /// What the last puts took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, JsonSchema, Serialize)]
 pub(crate) struct PutStatus {
     /// Puts since the start.
     pub(crate) count: u64,

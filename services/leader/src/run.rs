@@ -9,7 +9,7 @@ use runtime::identity::unix_time_ns;
 use runtime::presence::{Presence, PresencePlace};
 use runtime::{Identity, Shutdown, StateDir};
 use tokio::net::TcpListener;
-use tokio::sync::{mpsc, oneshot, watch};
+use tokio::sync::{Semaphore, mpsc, oneshot, watch};
 use tokio::task::JoinHandle;
 use tokio::time::{MissedTickBehavior, interval};
 use vision::{LandmarkSet, SetVersion};
@@ -21,9 +21,11 @@ use zenoh::query::Query;
 use crate::announcements::Announcements;
 use crate::answers::{Answers, answer_edit, edit_of};
 use crate::book::{Book, Edit, RefusedEdit};
+use crate::camera_watch::{self, CameraWatch};
 use crate::config::LeaderConfig;
 use crate::error::LeaderError;
 use crate::landmark_files::read_landmarks;
+use crate::lessons::Lessons;
 use crate::memory::Memory;
 use crate::publication::Publication;
 use crate::put_times::PutTimes;
@@ -115,6 +117,12 @@ impl Leader {
         let (requests_in, requests) = mpsc::channel(WAITING_EDITS);
         let (edits, edits_seen) = watch::channel(EditCounts::default());
         let put_times = Arc::new(PutTimes::default());
+        let cameras = camera_watch::cameras(&config.cameras);
+        let mut watches = Vec::new();
+        for camera in &config.cameras {
+            watches.push(CameraWatch::begin(&session, &keys, camera, &cameras).await?);
+        }
+        let handle = LeaderHandle { requests: requests_in, publications: published.clone() };
         let face = Arc::new(Face {
             vehicle: config.vehicle.clone(),
             identity,
@@ -122,12 +130,17 @@ impl Leader {
             publications: published.clone(),
             edits: edits_seen,
             put_times: Arc::clone(&put_times),
+            desk: handle.clone(),
+            cameras,
+            camera_ids: config.cameras.clone(),
+            lessons: Lessons::default(),
+            learners: Arc::new(Semaphore::new(1)),
         });
         let answers = Answers::declare(&session, &keys, published.clone(), queries_in).await?;
         let announcements = Announcements::declare(&session, &keys, put_times).await?;
         announcements.say_all(&published.borrow().clone()).await;
         let serving = tokio::spawn({
-            let (routes, shutdown) = (web::routes(Arc::clone(&face)), shutdown.clone());
+            let (routes, shutdown) = (web::routes(&face), shutdown.clone());
             async move {
                 http_face::serve(listener, routes, policy, async move { shutdown.requested().await }).await
             }
@@ -139,11 +152,14 @@ impl Leader {
             if let Err(error) = serving.await {
                 tracing::error!(%error, "the web face ended early");
             }
+            for watch in watches {
+                watch.end().await;
+            }
             drop((answers, presence));
             superseded.map_or(Ok(report), |first| Err(first.into()))
         });
         tracing::info!(vehicle = config.vehicle, page = %format!("http://{page}/"), "leader");
-        Ok(Self { handle: LeaderHandle { requests: requests_in, publications: published }, page, task })
+        Ok(Self { handle, page, task })
     }
 
     /// A way to change the set.

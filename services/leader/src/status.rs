@@ -1,12 +1,13 @@
 //! How a leader is, as JSON (contract section 8) and as a message.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use waymark_proto::v1;
 
 use crate::put_times::PutStatus;
 
 /// What a leader says of itself.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, JsonSchema, Serialize)]
 pub(crate) struct LeaderStatus {
     /// The vehicle's id.
     pub(crate) vehicle: String,
@@ -28,19 +29,32 @@ pub(crate) struct LeaderStatus {
     pub(crate) edits: EditCounts,
     /// What its own puts take.
     pub(crate) puts: PutStatus,
-    /// A leader looks through no camera.
-    pub(crate) cameras: [(); 0],
+    /// Cameras that people look through to teach it landmarks.
+    pub(crate) cameras: Vec<CameraStatus>,
+}
+
+/// A camera that people look through.
+#[derive(Clone, Debug, JsonSchema, Serialize)]
+pub(crate) struct CameraStatus {
+    /// The camera's id.
+    pub(crate) id: String,
+    /// `waiting`, `live` or `stale`.
+    pub(crate) state: &'static str,
+    /// Number of the newest frame.
+    pub(crate) sequence: Option<u64>,
+    /// Age of the newest frame since its arrival, ms.
+    pub(crate) age_ms: Option<f64>,
 }
 
 /// The way to the others.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, JsonSchema, Serialize)]
 pub(crate) struct RouterStatus {
     /// Whether at least one router is connected.
     pub(crate) connected: bool,
 }
 
 /// Which state of the set is in force.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, JsonSchema, Serialize)]
 pub(crate) struct SetStatus {
     /// Counts starts.
     pub(crate) epoch: u64,
@@ -49,7 +63,7 @@ pub(crate) struct SetStatus {
 }
 
 /// Changes asked for, by what came of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct EditCounts {
     /// Made.
     pub made: u64,

@@ -1,24 +1,32 @@
 //! The leader's routes (contract section 8) on the shared web face.
 
+mod landmarks;
+mod lessons;
+
 use std::sync::Arc;
 
 use axum::extract::State;
 use axum::response::Response;
 use axum::routing::get;
 use axum::{Extension, Json, Router};
-use http_face::{Check, Counters, documents, health, metrics_text, page};
-use metrics::{counter, gauge};
-use metrics_exporter_prometheus::PrometheusBuilder;
+use http_face::{
+    Api, Cameras, Check, Counters, Health, Operation, Picture, PictureFeed, STALE_AFTER, health,
+    metrics_text, page,
+};
+use ingest::encoded::EncodedFrame;
 use runtime::Identity;
 use runtime::link_trouble;
 use runtime::session::is_router_connected;
-use tokio::sync::watch;
-use waymark_proto::documents::{landmark_document, set_document};
+use serde_json::json;
+use tokio::sync::{Semaphore, watch};
 use zenoh::Session;
 
+use crate::lessons::Lessons;
+use crate::metrics;
 use crate::publication::Publication;
 use crate::put_times::PutTimes;
-use crate::status::{EditCounts, LeaderStatus, RouterStatus, SetStatus};
+use crate::run::LeaderHandle;
+use crate::status::{CameraStatus, EditCounts, LeaderStatus, RouterStatus, SetStatus};
 
 /// Everything that the routes look at.
 pub(crate) struct Face {
@@ -28,20 +36,32 @@ pub(crate) struct Face {
     pub(crate) publications: watch::Receiver<Publication>,
     pub(crate) edits: watch::Receiver<EditCounts>,
     pub(crate) put_times: Arc<PutTimes>,
+    pub(crate) desk: LeaderHandle,
+    pub(crate) cameras: Arc<Cameras<EncodedFrame>>,
+    pub(crate) camera_ids: Vec<String>,
+    pub(crate) lessons: Lessons,
+    /// Lessons worked on at once.
+    pub(crate) learners: Arc<Semaphore>,
 }
 
 type Shared = State<Arc<Face>>;
 
 /// All routes of a leader.
-pub(crate) fn routes(face: Arc<Face>) -> Router {
-    Router::new()
-        .route("/livez", get(|| async { health(&[Check::pass("process", "answers")]) }))
-        .route("/readyz", get(ready))
-        .route("/metrics", get(metrics))
-        .route("/api/v1/status", get(status))
-        .with_state(Arc::clone(&face))
-        .merge(landmarks(face))
-        .merge(page())
+pub(crate) fn routes(face: &Arc<Face>) -> Router {
+    let shared = || Arc::clone(face);
+    let alive = Operation::get("Whether the process answers").gives::<Health>();
+    let is_ready = Operation::get("Whether everything is well, with a reason for each check")
+        .gives::<Health>()
+        .gives_with::<Health>(503);
+    let figures = Operation::get("Figures for Prometheus").answers("text/plain", json!({ "type": "string" }));
+    let status_of = Operation::get("How the leader is").gives::<LeaderStatus>();
+    let api = Api::new("Waymark leader", env!("CARGO_PKG_VERSION"))
+        .route("/livez", [alive], get(|| async { health(vec![Check::pass("process", "answers")]) }))
+        .route("/readyz", [is_ready], get(ready).with_state(shared()))
+        .route("/metrics", [figures], get(scrape).with_state(shared()))
+        .route("/api/v1/status", [status_of], get(status).with_state(shared()));
+    let api = lessons::routes(landmarks::routes(face.cameras.routes(api), face), face);
+    api.undescribed(page()).finish()
 }
 
 impl Face {
@@ -59,7 +79,24 @@ impl Face {
             set: SetStatus { epoch: set.version.epoch, version: set.version.version },
             edits: *self.edits.borrow(),
             puts: self.put_times.status(),
-            cameras: [],
+            cameras: self.camera_ids.iter().map(|id| self.camera(id)).collect(),
+        }
+    }
+}
+
+impl Face {
+    fn camera(&self, id: &str) -> CameraStatus {
+        let newest = self.cameras.feed(id).and_then(PictureFeed::newest);
+        let age = newest.as_ref().map(Picture::age);
+        CameraStatus {
+            id: id.to_owned(),
+            state: match age {
+                None => "waiting",
+                Some(age) if age > STALE_AFTER => "stale",
+                Some(_) => "live",
+            },
+            sequence: newest.map(|newest| newest.sequence),
+            age_ms: age.map(|age| age.as_secs_f64() * 1e3),
         }
     }
 }
@@ -69,45 +106,13 @@ async fn ready(State(face): Shared) -> Response {
         true => Check::pass("router", "connected"),
         false => Check::fail("router", link_trouble::no_router()),
     };
-    health(&[router])
+    health(vec![router])
 }
 
 async fn status(State(face): Shared) -> Json<LeaderStatus> {
     Json(face.status().await)
 }
 
-/// A recorder of its own for each scrape: two services in one process never mix their figures.
-async fn metrics(State(face): Shared, Extension(refusals): Extension<Arc<Counters>>) -> Response {
-    let status = face.status().await;
-    let recorder = PrometheusBuilder::new().build_recorder();
-    metrics::with_local_recorder(&recorder, || {
-        gauge!("waymark_uptime_seconds").set(status.uptime_s);
-        gauge!("waymark_landmarks").set(status.landmarks as f64);
-        gauge!("waymark_landmark_set_epoch").set(status.set.epoch as f64);
-        gauge!("waymark_landmark_set_version").set(status.set.version as f64);
-        gauge!("waymark_router_connected").set(f64::from(u8::from(status.router.connected)));
-        counter!("waymark_landmark_edits_total", "result" => "made").absolute(status.edits.made);
-        counter!("waymark_landmark_edits_total", "result" => "refused").absolute(status.edits.refused);
-        counter!("waymark_puts_total").absolute(status.puts.count);
-        gauge!("waymark_put_seconds_median").set(status.puts.median_ms * 1e-3);
-        gauge!("waymark_put_seconds_longest").set(status.puts.longest_ms * 1e-3);
-        for (reason, count) in refusals.by_reason() {
-            counter!("waymark_http_refused_total", "reason" => reason).absolute(count);
-        }
-    });
-    metrics_text(recorder.handle().render())
-}
-
-/// The landmarks in force.
-fn landmarks(face: Arc<Face>) -> Router {
-    let set = move || Arc::clone(&face.publications.borrow().set);
-    let of_one = set.clone();
-    documents(
-        "landmark",
-        "/api/v1/landmarks",
-        move || set_document(&set()),
-        move |id| {
-            of_one().landmarks.iter().find(|landmark| landmark.id == id).map(|it| landmark_document(it))
-        },
-    )
+async fn scrape(State(face): Shared, Extension(refusals): Extension<Arc<Counters>>) -> Response {
+    metrics_text(metrics::exposition(&face.status().await, &refusals))
 }

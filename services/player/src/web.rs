@@ -15,7 +15,7 @@ use crate::tempo::Rate;
 /// All routes of a player.
 pub fn routes(control: Control) -> Router {
     Router::new()
-        .route("/livez", get(|| async { health(&[Check::pass("process", "answers")]) }))
+        .route("/livez", get(|| async { health(vec![Check::pass("process", "answers")]) }))
         .route("/api/v1/player", get(status))
         .route("/api/v1/player/{command}", post(command))
         .with_state(control)

@@ -3,8 +3,8 @@
 use axum::routing::{get, post};
 use axum::{Extension, Router};
 use http_face::{
-    Access, Cameras, Check, Counters, Events, Picture, PictureRequest, Policy, Render, ServeReport, health,
-    page, serve,
+    Access, Api, Cameras, Check, Counters, Events, Picture, PictureRequest, Policy, Render, ServeReport,
+    health, page, serve,
 };
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -73,8 +73,8 @@ impl Server {
 fn router(cameras: &Arc<Cameras<Vec<u8>>>, events: &Arc<Events>, changes: &Arc<AtomicU32>) -> Router {
     let (events, changes) = (Arc::clone(events), Arc::clone(changes));
     Router::new()
-        .route("/livez", get(|| async { health(&[Check::pass("process", "runs")]) }))
-        .route("/readyz", get(|| async { health(&[Check::fail("recorder", "the disk is full")]) }))
+        .route("/livez", get(|| async { health(vec![Check::pass("process", "runs")]) }))
+        .route("/readyz", get(|| async { health(vec![Check::fail("recorder", "the disk is full")]) }))
         .route("/api/v1/events", get(move |headers| async move { events.respond(&headers) }))
         .route(
             "/refused",
@@ -90,8 +90,7 @@ fn router(cameras: &Arc<Cameras<Vec<u8>>>, events: &Arc<Events>, changes: &Arc<A
                 body.len().to_string()
             }),
         )
-        .merge(cameras.routes())
-        .merge(page())
+        .merge(cameras.routes(Api::new("Test", "1")).undescribed(page()).finish())
 }
 
 /// "Draws" a picture: its source, the layers and the quality, so that a test sees what was asked for.

@@ -215,6 +215,7 @@ fn leader_config(args: &Args, state: &Path) -> LeaderConfig {
     let mut config = LeaderConfig {
         fleet: FLEET.to_owned(),
         vehicle: "leader".to_owned(),
+        cameras: vec![CAMERA.to_owned()],
         state_dir: state.join("leader"),
         ..LeaderConfig::default()
     };

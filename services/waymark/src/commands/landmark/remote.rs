@@ -8,7 +8,7 @@ use leader::landmark_files::{read_landmarks, write_landmarks};
 use leader::{Edit, Others};
 use runtime::SessionSettings;
 use vision::LandmarkSet;
-use waymark_proto::documents::set_document;
+use waymark_proto::documents::SetDocument;
 use waymark_proto::keys::VehicleKeys;
 
 use crate::columns::Columns;
@@ -94,7 +94,13 @@ pub(crate) struct Push {
 
 pub(crate) fn list(args: &List) -> Result<Ending, Failure> {
     let set = args.reach.speak(async |leader| Ok(leader.list().await?))?;
-    let text = if args.json { format!("{:#}\n", set_document(&set)) } else { listed(&set) };
+    let text = match args.json {
+        true => {
+            serde_json::to_string_pretty(&SetDocument::from(&set)).context("cannot write the set as JSON")?
+                + "\n"
+        }
+        false => listed(&set),
+    };
     Console::write_results(text.as_bytes())?;
     Ok(Ending::Fine)
 }
