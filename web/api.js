@@ -1,5 +1,7 @@
 // What the page asks of the service it came from. Every call ends: nothing here waits for ever.
 
+import { known } from "./state.js";
+
 const PATIENCE_MS = 4000;
 
 /** An answer that is a problem document (RFC 9457). */
@@ -18,9 +20,9 @@ async function problem(response) {
   return new Problem(response.status, document);
 }
 
-/** @param {string} path */
-export async function getJson(path) {
-  const response = await fetch(path, { signal: AbortSignal.timeout(PATIENCE_MS) });
+/** @param {string} path @param {number} [patienceMs] */
+export async function getJson(path, patienceMs = PATIENCE_MS) {
+  const response = await fetch(path, { signal: AbortSignal.timeout(patienceMs) });
   if (!response.ok) throw await problem(response);
   return response.json();
 }
@@ -32,11 +34,15 @@ export async function getStatus() {
   return { status: await response.json(), access: response.headers.get("x-waymark-access") ?? "open" };
 }
 
-/** A change; the token is asked for once and kept for this tab only. @param {string} path @param {string} [method] */
-export async function change(path, method = "POST") {
+/** A change, with the token that is kept for this tab. @param {string} path @param {{method?: string, body?: any}} [how] */
+export async function change(path, { method = "POST", body } = {}) {
   const token = sessionStorage.getItem("token");
-  const headers = token ? { authorization: `Bearer ${token}` } : undefined;
-  const response = await fetch(path, { method, headers, signal: AbortSignal.timeout(PATIENCE_MS) });
+  /** @type {Record<string, string>} */
+  const headers = {};
+  if (token) headers.authorization = `Bearer ${token}`;
+  if (body !== undefined) headers["content-type"] = "application/json";
+  const sent = body === undefined ? undefined : JSON.stringify(body);
+  const response = await fetch(path, { method, headers, body: sent, signal: AbortSignal.timeout(PATIENCE_MS) });
   if (!response.ok) throw await problem(response);
   return response.json().catch(() => null);
 }
@@ -54,20 +60,19 @@ export function keepToken(token) {
  * @property {number} ageMs age when it was sent
  */
 
-/**
- * The next picture that is not `after`; the geometry drawn into it is that of the same frame.
- * @param {string} camera
- * @param {{layers: string[], after: number | null, format: "jpg" | "png", widthPx: number}} wanted `png` keeps every pixel
- * @param {AbortSignal} stop
- * @returns {Promise<Picture>}
- */
-export async function nextPicture(camera, { layers, after, format, widthPx }, stop) {
-  const query = new URLSearchParams({ layers: layers.join(",") });
-  if (after !== null) query.set("after", String(after));
+/** @typedef {{layers: string[], format: "jpg" | "png", widthPx: number}} Wanted what a picture is to look like; `png` keeps every pixel */
+
+/** @param {Wanted} wanted */
+function queryOf({ layers, widthPx }) {
+  // A service that draws nothing does not know the parameter.
+  const query = new URLSearchParams(known.layers?.length ? { layers: layers.join(",") } : {});
   if (widthPx > 0) query.set("width", String(widthPx));
-  const path = `/api/v1/cameras/${encodeURIComponent(camera)}/overlay.${format}?${query}`;
-  const signal = AbortSignal.any([stop, AbortSignal.timeout(PATIENCE_MS + 5000)]);
-  const response = await fetch(path, { signal });
+  return query;
+}
+
+/** @param {string} path @param {AbortSignal} stop @returns {Promise<Picture>} */
+export async function getPicture(path, stop) {
+  const response = await fetch(path, { signal: AbortSignal.any([stop, AbortSignal.timeout(PATIENCE_MS + 5000)]) });
   if (!response.ok) throw await problem(response);
   const bitmap = await createImageBitmap(await response.blob());
   return {
@@ -76,6 +81,32 @@ export async function nextPicture(camera, { layers, after, format, widthPx }, st
     capturedAtMs: Number(response.headers.get("x-waymark-captured-at")) / 1e6,
     ageMs: Number(response.headers.get("x-waymark-age-ms")),
   };
+}
+
+/**
+ * The next picture that is not `after`; the geometry drawn into it is that of the same frame.
+ * @param {string} camera @param {number | null} after @param {Wanted} wanted @param {AbortSignal} stop
+ */
+export function nextPicture(camera, after, wanted, stop) {
+  const query = queryOf(wanted);
+  if (after !== null) query.set("after", String(after));
+  return getPicture(`/api/v1/cameras/${encodeURIComponent(camera)}/overlay.${wanted.format}?${query}`, stop);
+}
+
+/**
+ * A recorded picture, and what was said of it.
+ * @param {{name: string, camera: string}} recording @param {number} frame @param {Wanted} wanted @param {AbortSignal} stop
+ */
+export async function recordedPicture({ name, camera }, frame, wanted, stop) {
+  const query = queryOf(wanted);
+  query.set("camera", camera);
+  if (wanted.format === "png") query.set("quality", "100");
+  const path = `/api/v1/recordings/${encodeURIComponent(name)}/frames/${frame}`;
+  const [picture, entry] = await Promise.all([
+    getPicture(`${path}.jpg?${query}`, stop),
+    getJson(`${path}.json?${new URLSearchParams({ camera })}`),
+  ]);
+  return { picture, entry };
 }
 
 /**

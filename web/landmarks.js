@@ -1,7 +1,8 @@
 // The landmark table: what is looked for, what was observed, and why not.
 
+import { ask } from "./changes.js";
 import { byId, make, makeState, reconcile, setText, showState } from "./dom.js";
-import { STALE_AFTER_MS, frameAgeMs, known } from "./state.js";
+import { STALE_AFTER_MS, frameAgeMs, known, shownEntry } from "./state.js";
 import { compare } from "./statistics.js";
 import { MISSING, ago, figure, levelOf, missInWords } from "./words.js";
 
@@ -10,8 +11,7 @@ const rows = new Map();
 
 /** Every landmark in force, with each instance seen by the camera shown. */
 function entries() {
-  const camera = known.camera ? known.cameras.get(known.camera) : null;
-  const seen = camera?.landmarks ?? [];
+  const seen = shownEntry()?.landmarks ?? [];
   return known.landmarks.flatMap((landmark) => {
     const instances = seen.filter((/** @type {any} */ entry) => entry.id === landmark.id);
     const shown = instances.length > 0 ? instances : [{ id: landmark.id, instance: 0, result: null }];
@@ -30,7 +30,7 @@ export function showLandmarks() {
   const body = byId("landmarks").querySelector("tbody");
   if (!body) return;
   reconcile(body, rows, all.map((one) => one.key), makeRow);
-  const ageMs = known.camera ? frameAgeMs(known.cameras.get(known.camera)) : null;
+  const ageMs = known.camera && !known.playbackEntry ? frameAgeMs(known.cameras.get(known.camera)) : null;
   for (const one of all) fillRow(/** @type {HTMLTableRowElement} */ (rows.get(one.key)), one, ageMs);
   byId("landmarks").hidden = all.length === 0;
   byId("landmark-none").hidden = all.length > 0;
@@ -49,6 +49,7 @@ function makeRow(key) {
   const name = make("th", "", make("span", "name"), make("span", "kind quiet"));
   name.scope = "row";
   const result = make("td", "result", makeState());
+  if (!isFollower()) result.append(makeRetire(key));
   const [mean, variance] = ["mean", "variance"].map((kind) =>
     make("td", kind, make("div", "channels", ...["R", "G", "B"].map(makeStatistic))));
   mean.dataset.label = "Mean, levels";
@@ -61,6 +62,25 @@ function makeRow(key) {
   name.setAttribute("role", "rowheader");
   for (const cell of [result, mean, variance, facts]) cell.setAttribute("role", "cell");
   return row;
+}
+
+/** A leader may take a landmark back; the first press asks, the second does it. @param {string} key */
+function makeRetire(key) {
+  const id = key.split("#")[0];
+  const button = make("button", "", "Retire");
+  button.type = "button";
+  button.setAttribute("aria-label", `Retire ${id}`);
+  const calm = () => setText(button, "Retire");
+  button.addEventListener("blur", calm);
+  button.addEventListener("click", async () => {
+    if (button.textContent === "Retire") {
+      setText(button, "Really retire it");
+      return;
+    }
+    calm();
+    await ask(byId("landmark-answer"), `/api/v1/landmarks/${encodeURIComponent(id)}`, { method: "DELETE" });
+  });
+  return button;
 }
 
 /** @param {string} channel */
@@ -76,6 +96,8 @@ function fillRow(row, { landmark, entry, several }, ageMs) {
   const comparison = compare(landmark, entry.observed ?? entry.miss?.observed, entry.gain);
   const shade = comparison.shades > 1 ? ` · shade ${comparison.shade} of ${comparison.shades}` : "";
   setText(name.children[1], `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}`);
+  const retire = /** @type {HTMLButtonElement | undefined} */ (result.children[1]);
+  if (retire) retire.disabled = known.access === "read_only";
   fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry, ageMs, landmark.revision);
   comparison.mean.forEach((one, index) => fillStatistic(mean.children[0].children[index], one));
   comparison.variance.forEach((one, index) => fillStatistic(variance.children[0].children[index], one));

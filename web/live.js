@@ -1,8 +1,10 @@
 // The live picture: asked for frame by frame, so that what is drawn and what is said belong to the same frame.
 
-import { Problem, nextPicture } from "./api.js";
+import { Problem, getPicture, nextPicture, recordedPicture } from "./api.js";
 import { byId, make, reconcile, setAttribute, setText } from "./dom.js";
-import { STALE_AFTER_MS, known } from "./state.js";
+import { nextFrame, playback } from "./playback.js";
+import { STALE_AFTER_MS, known, shownEntry } from "./state.js";
+import { lesson, lessonPath } from "./lesson.js";
 import { duration, figure } from "./words.js";
 
 const LAYER_NAMES = {
@@ -43,6 +45,11 @@ export function isHeld() {
   return held;
 }
 
+/** Whether it is no live picture, and not meant to be one. */
+function isStill() {
+  return held || playback() !== null || lesson() !== null;
+}
+
 /** Holds the next frame, every pixel of it, or lets the picture run again. @param {boolean} wanted */
 export function hold(wanted) {
   held = wanted;
@@ -51,17 +58,12 @@ export function hold(wanted) {
 
 /** @param {string} camera @param {AbortSignal} stop */
 async function run(camera, stop) {
-  let after = shown?.sequence ?? null;
+  let after = playback() ? null : (shown?.sequence ?? null);
   while (!stop.aborted) {
     try {
-      const format = held ? "png" : "jpg";
-      const widthPx = held ? 0 : wantedWidth();
-      const picture = await nextPicture(camera, { layers: [...known.layersOn], after, format, widthPx }, stop);
-      if (stop.aborted) return;
-      after = picture.sequence;
-      frameWidthPx ||= picture.bitmap.width;
-      draw(picture);
-      if (held) return;
+      if (lesson()) return await showLesson(stop);
+      after = playback() ? await showRecorded(after, stop) : await showNext(camera, after, stop);
+      if (held && !playback()) return;
     } catch (error) {
       if (stop.aborted) return;
       if (error instanceof Problem) explain(error.message);
@@ -69,6 +71,37 @@ async function run(camera, stop) {
       await pause(500, stop);
     }
   }
+}
+
+/** @param {string} camera @param {number | null} after @param {AbortSignal} stop */
+async function showNext(camera, after, stop) {
+  const picture = await nextPicture(camera, after, wanted(held), stop);
+  if (!stop.aborted) draw(picture);
+  return picture.sequence;
+}
+
+/** @param {number | null} after @param {AbortSignal} stop */
+async function showRecorded(after, stop) {
+  const frame = await nextFrame(after, stop);
+  const recording = playback();
+  if (frame === null || !recording) return after;
+  const { picture, entry } = await recordedPicture(recording, frame, wanted(!recording.running), stop);
+  if (stop.aborted) return frame;
+  known.playbackEntry = { id: recording.camera, landmarks: entry.registration?.landmarks ?? [], registered: entry.registration !== null };
+  draw(picture);
+  byId("picture").dataset.frame = String(frame);
+  return frame;
+}
+
+/** The picture that somebody learns from stands until another one is wanted. @param {AbortSignal} stop */
+async function showLesson(stop) {
+  const picture = await getPicture(lessonPath(), stop);
+  if (!stop.aborted) draw(picture);
+}
+
+/** A picture that stands still is shown with every pixel. @param {boolean} isStill @returns {import("./api.js").Wanted} */
+function wanted(isStill) {
+  return { layers: [...known.layersOn], format: isStill ? "png" : "jpg", widthPx: isStill ? 0 : wantedWidth() };
 }
 
 /** No more pixels than the screen shows: the service sends less and the browser scales less. 0 is the frame's own. */
@@ -94,6 +127,7 @@ function pause(ms, stop) {
 function draw(picture) {
   const canvas = /** @type {HTMLCanvasElement} */ (byId("picture"));
   const { bitmap } = picture;
+  frameWidthPx ||= bitmap.width;
   if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
     canvas.width = bitmap.width;
     canvas.height = bitmap.height;
@@ -105,7 +139,7 @@ function draw(picture) {
   canvas.dataset.sequence = String(picture.sequence);
   times.push(shown.at);
   byId("stage").classList.remove("old");
-  byId("stage").classList.toggle("held", held);
+  byId("stage").classList.toggle("held", held && !playback());
   byId("picture-state").hidden = true;
 }
 
@@ -123,21 +157,22 @@ export function showLive() {
   times = times.filter((time) => now - time < 2000);
   if (shown) {
     const ageMs = shown.ageMs + now - shown.at;
-    if (ageMs > STALE_AFTER_MS && !held) explain(`Not live: this picture is ${duration(ageMs / 1000)} old`);
+    if (ageMs > STALE_AFTER_MS && !isStill()) explain(`Not live: this picture is ${duration(ageMs / 1000)} old`);
     const rate = times.length > 1 ? ((times.length - 1) * 1000) / (times[times.length - 1] - times[0]) : null;
-    setText(byId("frame-facts"),
-      `frame ${shown.sequence} · ${held ? "held" : figure(rate, 0, "fps shown")} · ${shown.width} × ${shown.height} px`);
+    const pace = playback() ? "recorded" : lesson() ? "taken to learn from" : held ? "held" : figure(rate, 0, "fps shown");
+    const unseen = known.playbackEntry?.registered === false ? " · was not registered" : "";
+    setText(byId("frame-facts"), `frame ${shown.sequence} · ${pace} · ${shown.width} × ${shown.height} px${unseen}`);
   }
   setAttribute(byId("picture"), "aria-label", describe());
   showCameraChoice();
 }
 
 function describe() {
-  const camera = known.camera && known.cameras.get(known.camera);
+  const camera = shownEntry();
   if (!camera || !shown) return "No picture yet";
   const seen = (camera.landmarks ?? []).filter((/** @type {any} */ entry) => entry.result === "measured");
   const names = [...new Set(seen.map((/** @type {any} */ entry) => entry.id))].join(", ");
-  return `${held ? "Held" : "Live"} picture of camera ${camera.id}; ${names ? `measured: ${names}` : "no landmark measured"}`;
+  return `${playback() ? "Recorded" : held ? "Held" : "Live"} picture of camera ${camera.id}; ${names ? `measured: ${names}` : "no landmark measured"}`;
 }
 
 /** Offers the layers that the service can draw. */
@@ -163,7 +198,7 @@ export function showLayers() {
 function showCameraChoice() {
   const ids = [...known.cameras.keys()];
   const choice = byId("cameras");
-  choice.hidden = ids.length < 2;
+  choice.hidden = ids.length < 2 || playback() !== null;
   reconcile(choice, keptCameras, ids, (id) => {
     const button = make("input");
     button.type = "radio";

@@ -8,9 +8,12 @@ import { showLandmarks } from "./landmarks.js";
 import { restartLive, showLayers, showLive } from "./live.js";
 import { watchChanges } from "./log.js";
 import { drawPlots, samplePlots } from "./plots.js";
+import { showPlayback, startPlayback, whenPlaybackChanges } from "./playback.js";
 import { showProbe, startProbe } from "./probe.js";
 import { showRecorder } from "./recorder.js";
+import { followRecordings, showRecordings, startRecordings } from "./recordings.js";
 import { known, learnCamera, learnStatus } from "./state.js";
+import { showTeaching, startTeaching } from "./teach.js";
 
 const ASK_STATUS_MS = 1000;
 /** Text is shown this often: faster than this nobody reads. */
@@ -19,7 +22,7 @@ const SHOW_MS = 200;
 /** The set whose landmarks are shown, so that they are asked for again when it changes. */
 let landmarksAskedAt = -Infinity;
 
-/** Whether a follower's pictures and events are being asked for. */
+/** Whether pictures and events are being asked for. */
 let started = false;
 
 async function askStatus() {
@@ -59,12 +62,16 @@ function chooseCamera() {
   restartLive();
 }
 
-/** A leader looks through no camera and records nothing: those sections, and what feeds them, are a follower's. */
+/** A leader registers and records nothing: those sections, and what feeds them, are a follower's. */
 function showSections() {
   const isFollower = known.status.role === "follower";
-  for (const section of ["live", "plots-section", "recorder-section", "fleet-section"]) byId(section).hidden = !isFollower;
-  if (isFollower && !started) {
-    started = true;
+  for (const section of ["plots-section", "recorder-section", "fleet-section", "recordings-section"]) byId(section).hidden = !isFollower;
+  byId("live").hidden = !isFollower && known.cameras.size === 0;
+  byId("teach").hidden = isFollower || known.cameras.size === 0;
+  if (started) return;
+  started = true;
+  void askLayers();
+  if (isFollower) {
     followEvents(
       (camera) => {
         learnCamera(camera);
@@ -72,8 +79,8 @@ function showSections() {
       },
       (following) => (known.following = following),
     );
-    void askLayers();
     void followFleet();
+    void followRecordings();
   }
 }
 
@@ -84,11 +91,18 @@ function show() {
   showLive();
   showProbe();
   showLandmarks();
+  showPlayback();
+  showTeaching();
   showRecorder();
   showFleet();
+  showRecordings();
   drawPlots();
 }
 
 startProbe();
+startPlayback();
+startRecordings();
+startTeaching();
+whenPlaybackChanges(restartLive);
 void askStatus();
 setInterval(show, SHOW_MS);

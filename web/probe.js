@@ -31,11 +31,11 @@ export function startProbe() {
 function zoom() {
   const factor = Number(/** @type {HTMLSelectElement} */ (byId("zoom")).value);
   byId("stage").classList.toggle("zoomed", factor > 0);
-  canvas.style.width = factor > 0 ? `${canvas.width * factor}px` : "";
+  for (const one of [canvas, byId("marks")]) one.style.width = factor > 0 ? `${canvas.width * factor}px` : "";
 }
 
 /** The frame is fitted into the element without distortion, so there may be margins. @param {PointerEvent} event @returns {[number, number]} */
-function pixelUnder(event) {
+export function pixelUnder(event) {
   const box = canvas.getBoundingClientRect();
   const scale = Math.min(box.width / canvas.width, box.height / canvas.height);
   const left = box.left + (box.width - canvas.width * scale) / 2;

@@ -1,6 +1,6 @@
 // The recorder: is it recording, where to, how much room is left.
 
-import { Problem, change, keepToken } from "./api.js";
+import { ask } from "./changes.js";
 import { byId, make, makeState, setText, showState } from "./dom.js";
 import { known } from "./state.js";
 import { MISSING, bytes, duration } from "./words.js";
@@ -72,7 +72,7 @@ function showControls(state) {
     place.append(...COMMANDS.map(({ command, name }) => {
       const button = make("button", "", name);
       button.type = "button";
-      button.addEventListener("click", () => void send(command));
+      button.addEventListener("click", () => void ask(/** @type {Element} */ (place.lastElementChild), `/api/v1/recorder/${command}`));
       return button;
     }), make("p", "answer quiet"));
     place.lastElementChild?.setAttribute("role", "status");
@@ -82,32 +82,4 @@ function showControls(state) {
     const button = /** @type {HTMLButtonElement} */ (place.children[index]);
     button.disabled = !allowed || !when(state);
   });
-}
-
-/** @param {string} command */
-async function send(command) {
-  const answer = byId("recorder-controls").lastElementChild;
-  if (!answer) return;
-  try {
-    await change(`/api/v1/recorder/${command}`);
-    setText(answer, "");
-  } catch (error) {
-    if (error instanceof Problem && error.status === 401) askToken(answer, command);
-    else setText(answer, error instanceof Problem ? error.message : "The service does not answer.");
-  }
-}
-
-/** @param {Element} answer @param {string} command */
-function askToken(answer, command) {
-  const field = make("input");
-  field.type = "password";
-  field.autocomplete = "off";
-  const again = make("button", "", "Use this token");
-  again.type = "button";
-  again.addEventListener("click", () => {
-    keepToken(field.value.trim());
-    void send(command);
-  });
-  answer.replaceChildren(make("label", "", "Changes need the token: ", field), " ", again);
-  field.focus();
 }

@@ -13,6 +13,7 @@
  * @property {string[] | null} layers that can be drawn, once they are known
  * @property {Set<string>} layersOn that are drawn
  * @property {boolean} following events arrive
+ * @property {any} playbackEntry what was said of the recorded frame that is shown, while one is shown
  */
 
 /** @type {Known} */
@@ -28,6 +29,7 @@ export const known = {
   layers: null,
   layersOn: new Set(),
   following: false,
+  playbackEntry: null,
 };
 
 /** @param {any} camera */
@@ -50,6 +52,12 @@ export function learnStatus(status, access) {
   for (const id of known.cameras.keys()) {
     if (!(status.cameras ?? []).some((/** @type {any} */ camera) => camera.id === id)) known.cameras.delete(id);
   }
+}
+
+/** What is said of the picture that is shown: of the live one, or of a recorded one in its place. */
+export function shownEntry() {
+  if (known.playbackEntry) return known.playbackEntry;
+  return known.camera ? known.cameras.get(known.camera) : null;
 }
 
 /** How old the newest frame of a camera is now, in ms: what the service said, and the time since. @param {any} camera */

@@ -18,6 +18,14 @@ export function duration(seconds) {
   return `${Math.round(seconds / 3600)} h`;
 }
 
+/** A place in a recording, as players show it. @param {number} seconds */
+export function clock(seconds) {
+  const whole = Math.max(0, seconds);
+  const [hours, minutes, rest] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60];
+  const tail = `${String(minutes).padStart(2, "0")}:${rest.toFixed(1).padStart(4, "0")}`;
+  return hours > 0 ? `${hours}:${tail}` : tail;
+}
+
 /** How long ago, without figures that change too fast to read. @param {number} seconds */
 export function ago(seconds) {
   return seconds < 1 ? "under 1 s ago" : `${duration(Math.floor(seconds))} ago`;

@@ -161,7 +161,7 @@ test("the leader's page shows what is published, and nothing that a leader does 
   const { page, complaints, close } = await openWatched(browser, demo.leaderUrl, {}, "#landmarks tbody tr");
   for (const id of ["red", "blue"]) await page.locator("#landmarks .name", { hasText: new RegExp(`^${id}`) }).waitFor();
   assert.match((await page.locator("#landmarks .result").first().textContent()) ?? "", /published, revision \d+/);
-  for (const section of ["#live", "#recorder-section", "#plots-section"]) assert.equal(await page.locator(section).isHidden(), true);
+  for (const section of ["#recordings-section", "#recorder-section", "#plots-section"]) assert.equal(await page.locator(section).isHidden(), true);
   assert.deepEqual(complaints, []);
   await close();
 });
