@@ -100,7 +100,7 @@ def growth(figures, lanes):
               for w, h in (map(int, size.split("x")) for size in SIZES)]
     dense = [(w * h, figures[f"register-{lanes}", "everything", f"{w}x{h}", 12, 1])
              for w, h in (map(int, size.split("x")) for size in SIZES)]
-    landmarks = [(count, figures["landmarks", "rink", SIZES[0], 12, count]) for count in (1, 8, 64)]
+    landmarks = [(count, figures["landmarks", "distinct", SIZES[0], 12, count]) for count in (1, 8, 64)]
     objects = sorted((key[4] ** 2, us) for key, us in figures.items() if key[0] == f"object-{lanes}")
     return {"pixels": pixels, "pixels, all match": dense, "landmarks": landmarks, "object's area": objects}
 
@@ -143,8 +143,9 @@ def main():
         contents(figures, f"register-{lanes}")
     gated = [[lanes, *(number(figures[f"gated-{lanes}", "block 24 px", size, 12, 1]) for size in SIZES)] for lanes in all_lanes]
     table("An object of 24 pixels in its gate, all steps, µs", ["", *SIZES], gated)
-    many = [[str(count), *(number(figures["landmarks", "rink", size, 12, count]) for size in SIZES)] for count in (1, 8, 64)]
-    table("Landmarks of distinct colours, µs", ["landmarks", *SIZES], many)
+    rows = [[f"{count}, {content}", *(number(figures[figure, content, size, 12, count]) for size in SIZES)]
+            for figure, content, count in sorted((*key[:2], key[4]) for key in figures if key[0].startswith("landmarks") and key[2] == SIZES[0])]
+    table("Landmarks, µs; the last row: each by itself", ["landmarks", *SIZES], rows)
     stages = ["statistics", "mask", "components", "outline", "hough", "shape", "measure"]
     rows = [[stage, *(number(figures[stage, "match", size, 12, 1]) for size in SIZES)] for stage in stages]
     table("Stages, rink, µs", ["stage", *SIZES], rows)

@@ -122,6 +122,13 @@ impl DoubledGrid {
         (u32::from(side) - 1) / SAMPLES_PER_PX
     }
 
+    /// Of a window side of `side` samples that starts on the first sample of a pixel: how many pixels it covers twice. (A
+    /// window with an even side that starts on a second sample is the mean of the two beside it that do not.)
+    #[must_use]
+    pub fn aligned_pixels(side: u16) -> u32 {
+        u32::from(side) / SAMPLES_PER_PX
+    }
+
     /// The samples on pixel `pixel`, where windows may start.
     #[must_use]
     pub fn starts_on(pixel: u32) -> Range<u32> {

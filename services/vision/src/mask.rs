@@ -12,8 +12,12 @@ mod lanes;
 mod mesh;
 mod planes;
 mod powers;
+mod ranges;
+mod refute;
 mod running;
 mod sieve;
+mod sub_blocks;
+mod sums;
 mod sure;
 mod survey;
 
@@ -31,6 +35,7 @@ use cells::Cells;
 use exact::{Area, BLOCK_PX, Question, Scratch, Test};
 use lane::{MEDIUM_SAMPLES, Medium, NARROW_SAMPLES, Narrow, Precision, Wide};
 use mesh::Mesh;
+use refute::{Doubt, Refutation, Refute, Refuter};
 use sieve::{Levels, Sieve, Sift};
 use sure::{Proof, Prove, Sure};
 use survey::{Ask, Survey, Take};
@@ -51,6 +56,9 @@ const STRIP_BLOCKS: u32 = 16;
 /// From so many landmarks of one window on, a survey that they share is cheaper than a sieve for each.
 const SHARED_BY: usize = 3;
 
+/// From so many on, one by whole windows pays.
+const SHARED_BY_MANY: usize = 16;
+
 /// Finds masks; keeps its memory from one to the next.
 #[derive(Default)]
 pub struct Masker {
@@ -62,9 +70,15 @@ pub struct Masker {
     survey: Survey,
     shared: Vec<Survey>,
     cells: Cells,
+    /// Where windows may match.
     areas: Vec<Area>,
+    doubts: Vec<u8>,
+    doubted: Cells,
+    doubted_areas: Vec<Area>,
+    refuter: Refuter,
     sure: Sure,
-    unproven: Vec<Area>,
+    /// Where only the exact test tells.
+    undecided: Vec<Area>,
     narrow: Scratch<Narrow>,
     medium: Scratch<Medium>,
     wide: Scratch<Wide>,
@@ -100,12 +114,9 @@ impl Masker {
         self.forget();
         let mut taken = 0;
         for grid in grids.clone() {
-            let surveyed = self.shared[..taken].iter().any(|survey| survey.grid() == Some(&grid));
+            let surveyed = self.shared[..taken].iter().any(|survey| survey.of(&grid).is_some());
             let sharing = || grids.clone().filter(|other| *other == grid).count();
-            let Some(mesh) = Mesh::of_blocks(grid.window()) else { continue };
-            if surveyed || sharing() < SHARED_BY {
-                continue;
-            }
+            let Some(mesh) = (!surveyed).then(|| shared_mesh(&grid, sharing())).flatten() else { continue };
             if taken == self.shared.len() {
                 self.shared.push(Survey::default());
             }
@@ -147,13 +158,14 @@ impl Masker {
     /// Where windows may match.
     fn find_areas(&mut self, frame: &Frame, grid: &DoubledGrid) {
         self.areas.clear();
+        self.undecided.clear();
         if self.accepted.is_empty() {
             return;
         }
         if let Some(mesh) = self.look(frame, grid)
             && self.cells.alive_share() <= DENSE_SHARE
         {
-            let rows = |band| mesh.mask_rows(band, grid.mask_height());
+            let rows = |row| mesh.mask_rows(row, grid.mask_height());
             self.cells.take_areas(rows, 0, &mut self.areas);
             return;
         }
@@ -164,28 +176,56 @@ impl Masker {
     /// Sets the cells that may match, by a shared survey, by the sieve, or by a survey where the sieve leaves much;
     /// `None` for windows too small for any of them.
     fn look(&mut self, frame: &Frame, grid: &DoubledGrid) -> Option<Mesh> {
-        let (of_rows, of_blocks) = (Mesh::of_single_rows(grid.window())?, Mesh::of_blocks(grid.window())?);
-        if let Some(at) = self.shared.iter().position(|survey| survey.grid() == Some(grid)) {
-            self.average(of_blocks, grid);
-            self.lanes.run(Ask {
-                survey: &mut self.shared[at],
-                shades: &self.averages,
-                cells: &mut self.cells,
-            });
-            return Some(of_blocks);
+        let shared = self.shared.iter().enumerate().find_map(|(at, survey)| Some((at, survey.of(grid)?)));
+        if let Some((at, mesh)) = shared {
+            self.ask(frame, grid, mesh, Some(at));
+            return Some(mesh);
         }
-        self.average(of_rows, grid);
+        let mesh = Mesh::of_single_rows(grid.window())?;
+        self.average(mesh, grid);
         self.levels.clear();
         self.levels.extend(self.averages.iter().copied().map(Levels::new));
         let Self { sieve, levels, cells, .. } = self;
-        self.lanes.run(Sift { sieve, frame, grid, mesh: of_rows, levels, cells });
-        if of_rows == of_blocks || self.cells.alive_share() <= SURVEY_SHARE {
-            return Some(of_rows);
+        self.lanes.run(Sift { sieve, frame, grid, mesh, levels, cells });
+        if self.cells.alive_share() <= SURVEY_SHARE {
+            return Some(mesh);
         }
-        self.average(of_blocks, grid);
-        self.lanes.run(Take { survey: &mut self.survey, frame, grid, mesh: of_blocks });
-        self.lanes.run(Ask { survey: &mut self.survey, shades: &self.averages, cells: &mut self.cells });
-        Some(of_blocks)
+        let mesh = Mesh::of_sub_blocks(grid.window())?;
+        self.lanes.run(Take { survey: &mut self.survey, frame, grid, mesh });
+        self.ask(frame, grid, mesh, None);
+        Some(mesh)
+    }
+
+    /// Sets the cells that may match by a survey: a shared one, or our own.
+    fn ask(&mut self, frame: &Frame, grid: &DoubledGrid, mesh: Mesh, shared: Option<usize>) {
+        self.average(mesh, grid);
+        let survey = shared.map_or(&mut self.survey, |at| &mut self.shared[at]);
+        self.lanes.run(Ask { survey, shades: &self.averages, cells: &mut self.cells });
+        self.refute(frame, grid, mesh, shared);
+    }
+
+    /// Takes the cells from those that may match whose colours look as if they did not, and adds to the undecided areas
+    /// what is not refuted of them.
+    fn refute(&mut self, frame: &Frame, grid: &DoubledGrid, mesh: Mesh, shared: Option<usize>) {
+        let [accepted] = self.accepted.as_slice() else { return };
+        if self.cells.all_dead() {
+            return;
+        }
+        let survey = shared.map_or(&self.survey, |at| &self.shared[at]);
+        let numbers = survey.ranges().doubt(&accepted.means(grid.samples()), &self.cells, &mut self.doubts);
+        for doubt in Doubt::ALL.into_iter().filter(|doubt| numbers & 1 << doubt.number() != 0) {
+            let Some(refutation) = Refutation::new(doubt, accepted, grid) else { continue };
+            self.doubted.take_from(&mut self.cells, &self.doubts, doubt.number());
+            let rows = |row| mesh.mask_rows(row, grid.mask_height());
+            self.doubted.take_areas(rows, 0, &mut self.doubted_areas);
+            let question = Question { frame, grid, accepted: &self.accepted };
+            for area in self.doubted_areas.drain(..) {
+                for area in area.strips(STRIP_BLOCKS) {
+                    let (refuter, rest) = (&mut self.refuter, &mut self.undecided);
+                    self.lanes.run(Refute { question, refutation, area, refuter, rest });
+                }
+            }
+        }
     }
 
     /// Averages of sub-blocks that may belong to matching windows, for each shade that has any.
@@ -197,7 +237,8 @@ impl Masker {
 
     fn test_areas(&mut self, frame: &Frame, grid: &DoubledGrid, mask: &mut BitMask) {
         self.prove_areas(frame, grid, mask);
-        let (lanes, areas) = (self.lanes, &self.areas);
+        self.undecided.append(&mut self.areas);
+        let (lanes, areas) = (self.lanes, &self.undecided);
         let question = Question { frame, grid, accepted: &self.accepted };
         if grid.samples() <= NARROW_SAMPLES {
             test(lanes, question, areas, &mut self.narrow, mask);
@@ -213,18 +254,26 @@ impl Masker {
         let [accepted] = self.accepted.as_slice() else { return };
         let Some(proof) = Proof::new(accepted, grid) else { return };
         let question = Question { frame, grid, accepted: &self.accepted };
-        self.unproven.clear();
         for area in self.areas.drain(..) {
             if (area.blocks.len() as u32) < PROOF_BLOCKS || (area.rows.len() as u32) < PROOF_ROWS {
-                self.unproven.push(area);
+                self.undecided.push(area);
                 continue;
             }
             for area in area.strips(STRIP_BLOCKS) {
-                let (sure, rest) = (&mut self.sure, &mut self.unproven);
+                let (sure, rest) = (&mut self.sure, &mut self.undecided);
                 self.lanes.run(Prove { question, proof, area, sure, mask: &mut *mask, rest });
             }
         }
-        std::mem::swap(&mut self.areas, &mut self.unproven);
+    }
+}
+
+/// How so many landmarks share a survey, if they do.
+fn shared_mesh(grid: &DoubledGrid, sharing: usize) -> Option<Mesh> {
+    let of_windows = || Mesh::of_windows(grid.window()).filter(|mesh| sums::fit(*mesh));
+    match sharing {
+        ..SHARED_BY => None,
+        SHARED_BY..SHARED_BY_MANY => Mesh::of_sub_blocks(grid.window()),
+        SHARED_BY_MANY.. => of_windows().or_else(|| Mesh::of_sub_blocks(grid.window())),
     }
 }
 
@@ -288,7 +337,7 @@ mod tests {
         #[test]
         fn every_variant_equals_the_definition(
             frame in frames(), width in 1u16..=32, height in 1u16..=32,
-            at in (0.0f32..1.0, 0.0f32..1.0), second in (0.0f32..1.0, 0.0f32..1.0),
+            at in (0.0f32..1.0, 0.0f32..1.0), second in (0.0f32..1.0, 0.0f32..1.0), off in -1.2f32..1.2,
             mean in 0.0f32..60.0, variance in 0.0f32..400.0, shades in 1usize..=2,
         ) {
             let window = WindowPx { width, height };
@@ -300,17 +349,21 @@ mod tests {
                 let place = |fraction: f32, most: u32| (fraction * most as f32) as u32;
                 WindowSums::at(&frame, &grid, place(at.0, grid.mask_width()), place(at.1, grid.mask_height())).stats()
             };
-            let shades = [shade(at), shade(second)][..shades].to_vec();
+            let mut shades = [shade(at), shade(second)][..shades].to_vec();
+            // Colours near those of the frame are the ones that need proof.
+            shades[0].mean[usize::from(window.width % 3)] += off * mean;
             let landmark = landmark(window, shades, ColorStats::uniform(mean, variance));
             let expected = reference::mask(&frame, region, &landmark).unwrap();
             for lanes in Lanes::available() {
                 let mut mask = BitMask::default();
                 Masker::with_lanes(lanes).find(&frame, &grid, &landmark, &mut mask, &mut NoProbe);
                 prop_assert!(mask == expected, "{} differs", lanes.name());
-                let mut masker = Masker::with_lanes(lanes);
-                masker.share(&frame, &std::iter::repeat_n(grid, SHARED_BY));
-                masker.find_shared(&frame, &grid, &landmark, &mut mask, &mut NoProbe);
-                prop_assert!(mask == expected, "{} differs when shared", lanes.name());
+                for sharing in [SHARED_BY, SHARED_BY_MANY] {
+                    let mut masker = Masker::with_lanes(lanes);
+                    masker.share(&frame, &std::iter::repeat_n(grid, sharing));
+                    masker.find_shared(&frame, &grid, &landmark, &mut mask, &mut NoProbe);
+                    prop_assert!(mask == expected, "{} differs when {sharing} share", lanes.name());
+                }
             }
         }
     }

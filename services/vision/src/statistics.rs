@@ -86,6 +86,11 @@ pub struct Acceptance {
 }
 
 impl Acceptance {
+    /// The whole levels between which accepted means lie; empty where they lie between two.
+    pub(crate) fn means(&self, samples: u32) -> [Bounds<u8>; 3] {
+        self.sum.map(|sum| Bounds { low: sum.low.div_ceil(samples) as u8, high: (sum.high / samples) as u8 })
+    }
+
     /// What `expected` ± `tolerance` accepts of windows of `samples` samples; `None` where it accepts nothing at all.
     #[must_use]
     pub fn new(expected: &ColorStats, tolerance: &ColorStats, samples: u32) -> Option<Self> {

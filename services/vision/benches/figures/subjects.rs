@@ -105,19 +105,41 @@ fn all_steps(
     });
 }
 
-/// Many landmarks of distinct colours.
+/// Many landmarks: of colours spread over the cube, as a fleet would choose them, and of the frame's own colours, which all
+/// match somewhere; together, and those of the first kind each by itself.
 fn landmarks(rounds: &mut Rounds<'_>, wanted: &Wanted<'_>, size: SizePx) {
+    let frame = Rc::new(scene::rink(size));
     for count in [1, 8, 64] {
-        let (frame, landmarks) = (scene::rink(size), scene::distinct(count));
-        let mut workspace = Workspace::default();
-        add(rounds, wanted, line("landmarks", "rink", size, 12, count), move || {
-            let request = Request::default();
-            let each = |_, found: Result<Vec<Sighting>, Miss>, workspace: &mut Workspace| {
-                found.into_iter().for_each(|sightings| workspace.recycle(sightings));
-            };
-            register_all(black_box(&frame), landmarks.iter(), &request, &mut workspace, &mut NoProbe, each);
-        });
+        let distinct = scene::distinct(count);
+        together(rounds, wanted, line("landmarks", "distinct", size, 12, count), &frame, distinct);
+        let learned = scene::learned(&frame, count);
+        together(rounds, wanted, line("landmarks", "learned", size, 12, count), &frame, learned);
     }
+    let (landmarks, mut workspace) = (scene::distinct(64), Workspace::default());
+    add(rounds, wanted, line("landmarks alone", "distinct", size, 12, 64), move || {
+        for landmark in &landmarks {
+            let request = Request::default();
+            let found = register(black_box(&frame), landmark, &request, &mut workspace, &mut NoProbe);
+            found.into_iter().for_each(|sightings| workspace.recycle(sightings));
+        }
+    });
+}
+
+fn together(
+    rounds: &mut Rounds<'_>,
+    wanted: &Wanted<'_>,
+    line: String,
+    frame: &Rc<Frame>,
+    landmarks: Vec<Landmark>,
+) {
+    let (frame, mut workspace) = (Rc::clone(frame), Workspace::default());
+    add(rounds, wanted, line, move || {
+        let request = Request::default();
+        let each = |_, found: Result<Vec<Sighting>, Miss>, workspace: &mut Workspace| {
+            found.into_iter().for_each(|sightings| workspace.recycle(sightings));
+        };
+        register_all(black_box(&frame), landmarks.iter(), &request, &mut workspace, &mut NoProbe, each);
+    });
 }
 
 /// A block of 24 pixels in a gate of twice its side, all steps.

@@ -105,6 +105,22 @@ pub(crate) fn distinct(count: u32) -> Vec<Landmark> {
         .collect()
 }
 
+/// Landmarks of the colours that a frame has at places spread over it, as if learned there.
+pub(crate) fn learned(frame: &Frame, count: u32) -> Vec<Landmark> {
+    let SizePx { width, height } = frame.size();
+    let place = |number: u32, of_px: u32| (2 * (number % 8) + 1) * of_px / 16;
+    let mean = |left: u32, top: u32| {
+        let pixels = (top..top + 6).flat_map(|y| (left..left + 6).map(move |x| (x, y)));
+        let sum = pixels.fold([0.0; 3], |sum: [f32; 3], (x, y)| {
+            let levels = frame.pixel(x, y);
+            [0, 1, 2].map(|channel| sum[channel] + f32::from(levels[channel]))
+        });
+        sum.map(|sum| sum / 36.0)
+    };
+    let landmark_at = |number| mean(place(number, width - 6), place(number / 8, height - 6));
+    (0..count).map(|number| landmark(landmark_at(number), 12, ColorStats::uniform(15.0, 50.0))).collect()
+}
+
 /// The sum of three small random numbers, ±12: near enough to a camera's noise.
 struct Noise(u64);
 

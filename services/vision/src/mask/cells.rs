@@ -33,12 +33,26 @@ impl Cells {
         &mut self.alive[band * self.blocks..][..self.blocks]
     }
 
+    /// Makes this the living cells of `others` that `numbers` has this number for, and these dead there.
+    pub(super) fn take_from(&mut self, others: &mut Self, numbers: &[u8], number: u8) {
+        self.reset(others.alive.len() / others.blocks.max(1), others.blocks);
+        for ((mine, alive), &numbered) in self.alive.iter_mut().zip(&mut others.alive).zip(numbers) {
+            *mine = *alive & u8::from(numbered == number);
+            *alive ^= *mine;
+        }
+    }
+
+    /// Whether all are dead.
+    pub(super) fn all_dead(&self) -> bool {
+        !any(&self.alive)
+    }
+
     /// The part of all cells that is alive, 0..1.
     pub(super) fn alive_share(&self) -> f64 {
-        // Whole chunks of bytes first: their sum fits into a byte, and vector instructions add bytes.
-        let sum = |chunk: &[u8]| u64::from(chunk.iter().copied().fold(0, u8::wrapping_add));
-        let alive: u64 = self.alive.chunks(128).map(sum).sum();
-        alive as f64 / self.alive.len().max(1) as f64
+        let (eights, rest) = self.alive.as_chunks::<8>();
+        let counted: u32 = eights.iter().map(|eight| u64::from_ne_bytes(*eight).count_ones()).sum();
+        let alive = counted + rest.iter().map(|&alive| u32::from(alive)).sum::<u32>();
+        f64::from(alive) / self.alive.len().max(1) as f64
     }
 
     /// Adds to `areas` what is left to test: neighbouring blocks together, and with what lives on below them while it
@@ -87,7 +101,7 @@ impl Cells {
     }
 
     /// The first run of living blocks of a band from block `from` on.
-    fn next_run(&self, band: usize, from: usize) -> Option<Range<usize>> {
+    pub(super) fn next_run(&self, band: usize, from: usize) -> Option<Range<usize>> {
         let row = &self.alive[band * self.blocks..][..self.blocks];
         let start = from + row[from..].iter().position(|&alive| alive != 0)?;
         let length = row[start..].iter().position(|&alive| alive == 0).unwrap_or(row.len() - start);

@@ -66,6 +66,12 @@ impl<T: Lane> Powers<T> {
         load(&self.lesser, x)
     }
 
+    /// B at all columns that were to be covered.
+    #[inline(always)]
+    pub(super) fn lesser_sums(&self) -> &[T] {
+        &self.lesser[..self.covered]
+    }
+
     /// Sums neighbouring columns.
     #[inline(always)]
     pub(super) fn build(&mut self) {
@@ -75,9 +81,9 @@ impl<T: Lane> Powers<T> {
                 break;
             }
             let (lower, upper) = self.levels.split_at_mut(level);
-            let (below, this) = (&lower[level - 1], &mut upper[0]);
-            for x in (0..self.covered).step_by(WIDTH) {
-                store(this, x, add(load(below, x), load(below, x + length)));
+            let below = lower[level - 1][..self.covered].iter().zip(&lower[level - 1][length..]);
+            for (sum, (&left, &right)) in upper[0][..self.covered].iter_mut().zip(below) {
+                *sum = left.plus(right);
             }
             length *= 2;
         }
@@ -90,9 +96,11 @@ impl<T: Lane> Powers<T> {
         let lesser = &mut self.lesser[..self.covered];
         let mut from = 0;
         for (level, sums) in self.levels.iter().enumerate().filter(|(level, _)| self.half & 1 << level != 0) {
-            for x in (0..lesser.len()).step_by(WIDTH) {
-                let part = load(sums, from + x);
-                store(lesser, x, if from == 0 { part } else { add(load(lesser, x), part) });
+            let part = &sums[from..from + lesser.len()];
+            if from == 0 {
+                lesser.copy_from_slice(part);
+            } else {
+                lesser.iter_mut().zip(part).for_each(|(sum, &more)| *sum = sum.plus(more));
             }
             from += 1 << level;
         }

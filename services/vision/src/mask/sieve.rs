@@ -7,7 +7,6 @@ use crate::frame::Frame;
 use crate::statistics::Bounds;
 
 use super::cells::Cells;
-use super::chunk::fit;
 use super::exact::BLOCK_PX;
 use super::lanes::Work;
 use super::mesh::Mesh;
@@ -76,17 +75,16 @@ impl Sieve {
         let region = grid.region();
         let bands = mesh.bands(region.height);
         let blocks = region.width.div_ceil(BLOCK_PX) as usize;
-        let padded = BLOCK_BYTES * (blocks + 1);
-        fit(&mut self.averages, padded);
-        fit(&mut self.next_averages, padded);
-        fit(&mut self.inside, padded);
+        for buffer in [&mut self.averages, &mut self.next_averages, &mut self.inside] {
+            buffer.resize(row_bytes(blocks), 0);
+        }
         cells.reset(bands as usize, blocks);
         for band in 0..bands {
             let start = 3 * region.x as usize;
             let row = frame.row(region.y + mesh.pixel_rows(band).start);
-            self.average(&row[start..start + 3 * region.width as usize], mesh.run_halvings);
+            self.average(&row[start..start + 3 * region.width as usize], mesh.run_halvings());
             for levels in levels {
-                compare(&self.averages[..padded], levels, &mut self.inside);
+                compare(&self.averages, levels, &mut self.inside);
                 for (block, alive) in cells.band(band as usize).iter_mut().enumerate() {
                     *alive |= any_pixel(&self.inside[BLOCK_BYTES * block..][..BLOCK_BYTES + 3]);
                 }
@@ -103,15 +101,33 @@ impl Sieve {
     }
 }
 
+/// Bytes that are worked on together: whole vectors of every instruction set.
+pub(super) const STEP_BYTES: usize = 64;
+
+/// Memory for the bytes of a row of `blocks` blocks, the pixel after them, and what [`join_shifted`] reads beyond.
+#[inline(always)]
+pub(super) fn row_bytes(blocks: usize) -> usize {
+    (BLOCK_BYTES * blocks + 3).next_multiple_of(STEP_BYTES) + STEP_BYTES
+}
+
 /// Makes of each byte the rounded average of the 2^`halvings` pixels from there on.
 #[inline(always)]
 pub(super) fn average_runs(averages: &mut Vec<u8>, memory: &mut Vec<u8>, halvings: u32) {
     for halving in 0..halvings {
-        let pairs = averages.iter().zip(&averages[3 << halving..]);
-        for (next, (&left, &right)) in memory.iter_mut().zip(pairs) {
-            *next = average(left, right);
-        }
+        join_shifted(averages, 3 << halving, memory, average);
         std::mem::swap(averages, memory);
+    }
+}
+
+/// `with` of every number and the one `shift` after it, but for those that [`row_bytes`] adds at the end.
+#[inline(always)]
+pub(super) fn join_shifted<T: Copy>(row: &[T], shift: usize, joined: &mut [T], with: impl Fn(T, T) -> T) {
+    // A length of whole steps: the loop never comes to its remainder.
+    let count = row.len() - STEP_BYTES;
+    for ((joined, &left), &right) in
+        joined[..count].iter_mut().zip(&row[..count]).zip(&row[shift..shift + count])
+    {
+        *joined = with(left, right);
     }
 }
 
