@@ -61,6 +61,26 @@ fn an_occluded_block_is_said_to_be_covered_and_taken_up_again_with_its_number() 
 }
 
 #[test]
+fn what_something_leaves_of_a_block_in_view_is_followed() {
+    let mut follow = follower();
+    let post = Block { x: 80.0, y: 20.0, width: 60.0, height: 100.0, color: GREY };
+    for k in 0..30 {
+        let block = moving(k);
+        let outcome = follow.on_frame(&picture(&[block, post], 1.0, k), stamp(k), &mut NoProbe);
+        let in_view_px = post.x - block.x;
+        if in_view_px < 11.0 {
+            break;
+        }
+        let [(row, sighting)] = seen(&outcome)[..] else { panic!("frame {k}: {:?}", outcome.landmarks) };
+        assert_eq!(row.instance, 0, "frame {k}");
+        assert!(sighting.centroid.x < post.x, "frame {k}: {:?}", sighting.centroid);
+        assert!((sighting.centroid.y - block.centre().y).abs() < 2.0, "frame {k}: {:?}", sighting.centroid);
+        let expected_px2 = 22.0 * in_view_px.min(22.0);
+        assert!((sighting.area_px2 / expected_px2 - 1.0).abs() < 0.2, "frame {k}: {}", sighting.area_px2);
+    }
+}
+
+#[test]
 fn a_block_that_leaves_is_not_claimed_of_what_stays() {
     let mut follow = follower();
     let mut lookalike = Block::square(150.0, 110.0, 20.0, [150, 90, 70]);

@@ -31,6 +31,10 @@ const DISC_SIZE_PX: u32 = 20;
 /// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
 /// apart on small signs.
 const PALEST: [f32; 3] = [0.3, 0.45, 0.62];
+/// Deeper than any colour: only the sign's own shades count, which tell it from a brick wall behind it.
+const OWN_SHADES: f32 = 2.0;
+/// Rectangles are looked for by these only where nothing scores so much: half a bush behind a post has their form.
+const CLEAR_SCORE: f32 = 0.5;
 
 /// What is searched for and where.
 #[derive(Clone, Copy)]
@@ -60,13 +64,20 @@ pub(crate) struct Candidate {
     pub(crate) window_px: u16,
     /// The likeness's tolerance over the descriptor's.
     pub(crate) tolerance_scale: f32,
-    /// Whether the picture's border cuts it.
+    /// Whether the picture's border cuts it, or something covers a part of it.
     pub(crate) cut: bool,
     /// How much it looks like the landmark, 0..1.
     pub(crate) score: f32,
+    /// The same if something covers a part of it.
+    pub(crate) score_if_covered: f32,
 }
 
 impl Candidate {
+    /// Takes it for the part of a known object that something leaves in view.
+    pub(crate) fn take_for_a_part(&mut self) {
+        (self.cut, self.score) = (true, self.score_if_covered);
+    }
+
     /// Whether `point` lies on the object or next to its middle.
     pub(crate) fn covers(&self, point: PointPx) -> bool {
         let near_px = 0.25 * self.area_px2.sqrt();
@@ -97,7 +108,11 @@ impl Finder {
         } else {
             let palest = search.likeness.with_palest(PALEST[0]);
             marker.mark(search.frame, search.region, &palest, like);
-            for palest in PALEST {
+            for palest in PALEST.into_iter().chain([OWN_SHADES]) {
+                let clear = found.iter().any(|known: &Candidate| known.score >= CLEAR_SCORE);
+                if palest == OWN_SHADES && clear && search.landmark.shape == ShapeClass::Rectangle {
+                    break;
+                }
                 let likeness = search.likeness.with_palest(palest);
                 marker.refine(search.frame, search.region, &likeness, like, deep);
                 components.find(deep);
@@ -210,6 +225,7 @@ fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
     let edge = border(search, &found.mask);
     let mut candidate = measured(search, found.mask, &form, edge)?;
     candidate.score *= found.clear.sqrt();
+    candidate.score_if_covered *= found.clear.sqrt();
     // Mixed pixels all around are most of so small a sign: the fitted disc tells its middle better than they do.
     candidate.centroid = found.centre;
     Some(candidate)
@@ -222,7 +238,18 @@ fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Opti
     let cut = object.touches_border(search.frame.width(), search.frame.height());
     let gain = search.likeness.nearest(observed.mean).gain;
     let tolerance_scale = search.likeness.tolerance_scale(search.landmark);
-    Some(Candidate { object, centroid, area_px2, gain, observed, window_px, tolerance_scale, cut, score })
+    Some(Candidate {
+        object,
+        centroid,
+        area_px2,
+        gain,
+        observed,
+        window_px,
+        tolerance_scale,
+        cut,
+        score: score.whole,
+        score_if_covered: score.covered,
+    })
 }
 
 /// A sign's border: light and without a tint, wider on larger signs.

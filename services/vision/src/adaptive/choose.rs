@@ -45,18 +45,23 @@ impl Form {
 
     /// How well it suits a shape class whatever the details of its outline, 0..1.
     fn suits(&self, shape: ShapeClass) -> f32 {
-        let (longest, least_solid) = match shape {
-            ShapeClass::Octagon | ShapeClass::Circle => (1.35, 0.6),
-            ShapeClass::Block => (1.7, 0.8),
-            ShapeClass::Triangle => (1.7, 0.6),
-            ShapeClass::Rectangle => (6.0, 0.6),
-            ShapeClass::Any => (4.0, 0.6),
+        let longest = match shape {
+            ShapeClass::Octagon | ShapeClass::Circle => 1.35,
+            ShapeClass::Block | ShapeClass::Triangle => 1.7,
+            ShapeClass::Rectangle => 6.0,
+            ShapeClass::Any => 4.0,
         };
         let too_long = (self.elongation / longest).max(1.0) - 1.0;
+        (-(too_long / 0.25).powi(2)).exp() * self.suits_if_covered(shape)
+    }
+
+    /// The same if something may cover a part of it: what is left of a convex form has any length, but is convex.
+    fn suits_if_covered(&self, shape: ShapeClass) -> f32 {
+        let least_solid = if shape == ShapeClass::Block { 0.8 } else { 0.6 };
         let too_ragged = (least_solid - self.solidity).max(0.0);
         let least_full = if shape == ShapeClass::Rectangle { FULL_RECTANGLE } else { 0.0 };
         let too_round = (least_full - self.fullness).max(0.0);
-        (-(too_long / 0.25).powi(2) - (too_ragged / 0.15).powi(2) - (too_round / 0.06).powi(2)).exp()
+        (-(too_ragged / 0.15).powi(2) - (too_round / 0.06).powi(2)).exp()
     }
 }
 
@@ -81,18 +86,27 @@ fn elongation(object: &Patch) -> f32 {
     ((half + root) / (half - root).max(1e-3)).sqrt() as f32
 }
 
-/// How much the object looks like the landmark, 0..1.
+/// How much an object looks like the landmark, 0..1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Score {
+    /// When all of it is in view.
+    pub(crate) whole: f32,
+    /// When something may cover a part of it.
+    pub(crate) covered: f32,
+}
+
+/// How much the object looks like the landmark.
 pub(crate) fn score(
     search: &Search<'_>,
     object: &Patch,
     form: &Form,
     area_px2: f32,
     observed: &ColorStats,
-) -> f32 {
+) -> Score {
     let off = |value: f32, sigma: f32| (-0.5 * (value / sigma).powi(2)).exp();
     let size = area_px2 / (area_px2 + SPECK_AREA_PX2);
-    let surely = size * form.suits(search.landmark.shape) * isolation(search, object);
-    if let Some(face) = search.likeness.face() {
+    let surely = size * isolation(search, object);
+    let (look, scale) = if let Some(face) = search.likeness.face() {
         let seen = face.compare(face_pixels(search, object).map(|(color, _)| color));
         let light = off((seen.color.gain / search.gain).max(1e-3).ln(), 0.4);
         let pale = face.pale_middle(face_pixels(search, object));
@@ -100,12 +114,18 @@ pub(crate) fn score(
             if area_px2 >= RESOLVED_AREA_PX2 { (seen.lettering, 1.0) } else { (0.0, 1.5) };
         let evidence = lettering.max(pale).max(form.lettering).max(0.0);
         let lettered = (evidence * (1.0 + PLAIN_FACE) / (evidence + PLAIN_FACE)).min(1.0);
-        let merit = surely * light * off(seen.color.excess, sigma) * lettered;
-        return merit.powf(FACE_SCALE);
-    }
-    let color = search.likeness.nearest(observed.mean);
-    let light = off((color.gain / search.gain).max(1e-3).ln(), 0.25);
-    surely * light * off(color.excess, 0.7) * off(variance_excess(search, observed), 3.0)
+        (light * off(seen.color.excess, sigma) * lettered, FACE_SCALE)
+    } else {
+        let color = search.likeness.nearest(observed.mean);
+        let light = off((color.gain / search.gain).max(1e-3).ln(), 0.25);
+        (light * off(color.excess, 0.7) * off(variance_excess(search, observed), 3.0), 1.0)
+    };
+    let of_form = |suits: f32| (surely * look * suits).powf(scale);
+    let shape = search.landmark.shape;
+    let whole = of_form(form.suits(shape));
+    // Half a bush is as likely as half a sign, which shows only half of what is written on it.
+    let lettered = search.likeness.face().is_some();
+    Score { whole, covered: if lettered { whole } else { of_form(form.suits_if_covered(shape)) } }
 }
 
 /// The pixels of an object without its edge, each with its distance from the middle as a part of the radius.

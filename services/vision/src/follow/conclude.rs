@@ -1,11 +1,12 @@
 //! One landmark in one frame: what was found updates what is known, and becomes the outcome.
 
 use super::pursue::Pursuit;
-use super::state::{LandmarkState, Track};
+use super::state::{LandmarkState, Motion, Track};
 use super::{Scene, reason, report};
 use crate::adaptive::{Candidate, Likeness, Tracer};
+use crate::gate::innovation_gate;
 use crate::landmark::Landmark;
-use crate::outcome::{Adaptation, LandmarkOutcome, Miss, Sighting};
+use crate::outcome::{Adaptation, LandmarkOutcome, Miss, Prediction, Sighting};
 use crate::predict::{Fix, Predictor};
 use crate::register::ShapeVeto;
 
@@ -131,7 +132,9 @@ fn advance(
     let veto = scene.options.shape_veto;
     let outcome = match found.map(|found| (describe(landmark, &found, veto, rival, tracer), found)) {
         Some((Ok(sighting), found)) => {
-            track.follow(&found, fix(scene, &found));
+            let fix = Fix { area_px2: whole_area_px2(&found, &prediction), ..fix(scene, &found) };
+            let astray = full_frame && !innovation_gate(&prediction).contains(found.centroid);
+            track.follow(&found, fix, if astray { Motion::Anew } else { Motion::Continued });
             LandmarkOutcome {
                 innovation_px: Some(prediction.centroid.distance_px(found.centroid)),
                 adaptation: Some(adaptation(scene, &found, full_frame)),
@@ -150,6 +153,11 @@ fn advance(
         }
     };
     LandmarkOutcome { prediction: Some(prediction), gate: Some(gate), ..outcome }
+}
+
+/// The area of the whole object, of which only a part may be in view.
+fn whole_area_px2(found: &Candidate, prediction: &Prediction) -> f32 {
+    if found.cut { found.area_px2.max(prediction.area_px2) } else { found.area_px2 }
 }
 
 fn begin(

@@ -17,6 +17,12 @@ const FOLLOWED_PART: f32 = 0.35;
 const SEARCH_EVERY: u32 = 8;
 /// An object cut by the picture's border is gone when it shows less than this part of its area.
 const SLIVER: f32 = 0.12;
+/// Of an object seen so often the size is known,
+const KNOWN_AFTER: u32 = 3;
+/// and less than this part of it is not all of it.
+const COVERED_PART: f32 = 0.75;
+/// A part of an object lies within so many of its radii: corners reach further than the disc of the same area.
+const WITHIN: f32 = 1.25;
 /// Seeds looked at closely in a gate and in the whole frame.
 const SEEDS: (usize, usize) = (4, 12);
 
@@ -106,6 +112,9 @@ fn in_gate(
     let taken = |candidate: &Candidate| {
         others.iter().filter_map(|other| other.found.as_ref()).any(|found| found.covers(candidate.centroid))
     };
+    let part =
+        |candidate: &&mut Candidate| may_be_covered(track, candidate) && is_within(&prediction, candidate);
+    seen.iter_mut().filter(part).for_each(Candidate::take_for_a_part);
     let merit = |candidate: &Candidate| candidate.score * consistency(&prediction, candidate);
     // A last sliver at the picture's border is not the object any more.
     let gone = |candidate: &Candidate| candidate.cut && candidate.area_px2 < SLIVER * track.whole_area_px2;
@@ -114,6 +123,21 @@ fn in_gate(
     pursuit.rival = seen.get(1).map_or(0.0, merit);
     pursuit.found = seen.into_iter().next().filter(|best| merit(best) >= FOLLOWED_PART * track.score);
     pursuit
+}
+
+/// Whether something may cover a part of the object, so that a candidate is what it leaves in view.
+fn may_be_covered(track: &Track, candidate: &Candidate) -> bool {
+    track.sightings >= KNOWN_AFTER
+        && candidate.area_px2 < COVERED_PART * track.whole_area_px2
+        && candidate.score_if_covered > candidate.score
+}
+
+/// Whether a candidate lies where the object should be: what something leaves of it in view does not reach beyond it.
+fn is_within(prediction: &Prediction, candidate: &Candidate) -> bool {
+    let [xx, _, yy] = prediction.covariance_px2;
+    let radius_px = |area_px2: f32| (area_px2 / std::f32::consts::PI).sqrt();
+    let reach_px = prediction.centroid.distance_px(candidate.centroid) + radius_px(candidate.area_px2);
+    reach_px <= WITHIN * radius_px(prediction.area_px2) + (xx + yy).sqrt()
 }
 
 /// How well a candidate continues what was known of the object: its place and its size, 0..1.
@@ -158,6 +182,13 @@ fn reacquire(track: &Track, company: Company, pursuit: &mut Pursuit, further: &m
         Company::Others => size_px + sigma_px.min(size_px),
     };
     let off_px = |candidate: &Candidate| pursuit.prediction.centroid.distance_px(candidate.centroid);
+    let prediction = pursuit.prediction;
+    let is_part = |candidate: &Candidate| {
+        may_be_covered(track, candidate) && (company == Company::Alone || is_within(&prediction, candidate))
+    };
+    let score = |candidate: &Candidate| {
+        if is_part(candidate) { candidate.score_if_covered } else { candidate.score }
+    };
     let possible = |candidate: &Candidate| {
         let size = (candidate.area_px2 / pursuit.prediction.area_px2.max(1.0)).ln();
         // What comes out from behind something, or into the picture, shows less of itself.
@@ -165,11 +196,15 @@ fn reacquire(track: &Track, company: Company, pursuit: &mut Pursuit, further: &m
         let smallest = if partly { -2.5 } else { -0.6 };
         (smallest..0.6 + 0.02 * lost).contains(&size)
             && off_px(candidate) <= reach_px
-            && candidate.score >= 0.6 * track.score
-            && !(candidate.cut && candidate.area_px2 < SLIVER * track.whole_area_px2)
+            && score(candidate) >= 0.6 * track.score
+            && !(partly && candidate.area_px2 < SLIVER * track.whole_area_px2)
     };
     if let Some(at) = further.iter().position(possible) {
-        pursuit.found = Some(further.remove(at));
+        let mut found = further.remove(at);
+        if is_part(&found) {
+            found.take_for_a_part();
+        }
+        pursuit.found = Some(found);
         pursuit.full_frame = true;
         pursuit.rival = further.first().map_or(0.0, |next| next.score);
     } else {

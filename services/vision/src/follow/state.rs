@@ -55,6 +55,15 @@ pub struct Track {
     pub misses: u32,
 }
 
+/// What a sighting says of the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Motion {
+    /// It goes on.
+    Continued,
+    /// The object was lost and is not where its motion would have led: nothing is known of it any more.
+    Anew,
+}
+
 impl LandmarkState {
     /// Of a landmark that was never seen.
     #[must_use]
@@ -74,10 +83,10 @@ impl LandmarkState {
 
 impl Track {
     /// Takes a sighting into account.
-    pub(super) fn follow(&mut self, found: &Candidate, fix: Fix) {
+    pub(super) fn follow(&mut self, found: &Candidate, fix: Fix, motion: Motion) {
         self.misses = 0;
         self.sightings = self.sightings.saturating_add(1);
-        // What the picture's border cuts tells little of how the whole object looks.
+        // What the picture's border or something else cuts tells little of how the whole object looks.
         if !found.cut {
             self.gain += FOLLOW_RATE * (found.gain - self.gain);
             self.score += FOLLOW_RATE * (found.score - self.score);
@@ -85,6 +94,9 @@ impl Track {
         if !found.cut || found.area_px2 > self.whole_area_px2 {
             self.whole_area_px2 = found.area_px2;
         }
-        self.predictor.update(fix);
+        match motion {
+            Motion::Continued => self.predictor.update(fix),
+            Motion::Anew => self.predictor = Predictor::new(self.predictor.method, fix),
+        }
     }
 }
