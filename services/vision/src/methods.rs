@@ -16,12 +16,21 @@
 //! | 2.7.4, eq. 2.22 | [`ncc`] |
 //! | 2.8, eqs. 2.23–2.37 | [`horn_schunck`] |
 //!
-//! Fourier transforms are those of `realfft` and `rustfft`. The rest is our own. `imageproc` has many of these filters,
-//! but brings a random number generator and the C library with it, which this crate does without; it stays a peer in
-//! the benches. Where it was looked at for correctness: its Hough transform truncates ρ towards zero, so that one bin is
-//! twice as wide, and does not join 0° to 180°; its template matching is a direct sum; it has no sub-pixel phase
-//! correlation, no dense flow and no registration by control points. `image`'s cubic filter widens with the scale, which
-//! is right for thumbnails, but is not the interpolation of eq. 2.11.
+//! Fourier transforms are those of `realfft` and `rustfft`. The rest is our own. `imageproc` 0.27 has many of these methods,
+//! but brings a random number generator and the C library with it, which this crate does without; it stays a peer of the
+//! benches (`tests/bench-methods`). And of what it has, these would not do:
+//!
+//! - its mean filter cuts off fractions twice, once along x and once along y, which darkens by up to two levels;
+//! - its filters and medians know odd windows only, and whole levels (Fig 2.1 has a median of 2 × 2);
+//! - its normalised cross correlation is not eq. 2.22: means are not taken away, so every bright window is alike; it is
+//!   summed up directly, and panics where the template is as large as the picture;
+//! - its Canny smooths with a fixed width, and panics on thresholds in the wrong order;
+//! - its Hough transform truncates ρ towards zero, so that one bin is twice as wide, knows whole degrees only, does not
+//!   join 0° to 180°, and does not tell a line's votes;
+//! - its maps between pictures are projections, not the bilinear model of eqs. 2.20 and 2.21;
+//! - it has no convolution by Fourier transforms, no phase correlation and no dense flow.
+//!
+//! The cubic filter of `image` widens where a picture shrinks, which suits thumbnails, but is not eq. 2.11.
 
 pub mod border;
 pub mod canny;

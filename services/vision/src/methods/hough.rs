@@ -111,27 +111,33 @@ impl Votes {
             .filter(|&(votes, _)| votes >= peaks.least_votes.max(1))
             .collect();
         order.sort_unstable_by_key(|&(votes, at)| (std::cmp::Reverse(votes), at));
-        let mut taken: Vec<(u32, u32)> = Vec::new();
+        let mut silenced = vec![false; self.votes.len()];
         let mut lines = Vec::new();
         for (votes, at) in order {
-            let cell = (at / cells, at % cells);
             if lines.len() >= peaks.most_lines {
                 break;
             }
-            if !taken.iter().any(|&other| self.near(cell, other, peaks)) {
-                taken.push(cell);
+            if !silenced[at as usize] {
+                let cell = (at / cells, at % cells);
+                self.silence(cell, peaks, &mut silenced);
                 lines.push(self.line(cell, votes));
             }
         }
         lines
     }
 
-    /// Whether one cell silences the other. At the end of 0..π a line comes in again with ρ negated.
-    fn near(&self, (angle, rho): (u32, u32), (other_angle, other_rho): (u32, u32), peaks: &Peaks) -> bool {
-        let apart = angle.abs_diff(other_angle);
-        let beside = |rho: u32| rho.abs_diff(other_rho) <= peaks.near_rho_px;
-        (apart <= peaks.near_angles && beside(rho))
-            || (self.angles - apart <= peaks.near_angles && beside(2 * self.reach - rho))
+    /// Marks the cells near one. At the end of 0..π a line comes in again with ρ negated.
+    fn silence(&self, (angle, rho): (u32, u32), peaks: &Peaks, silenced: &mut [bool]) {
+        let (angles, cells) = (i64::from(self.angles), 2 * self.reach + 1);
+        let near_angles = i64::from(peaks.near_angles.min(self.angles));
+        for ahead in -near_angles..=near_angles {
+            let other = i64::from(angle) + ahead;
+            let rho = if (0..angles).contains(&other) { rho } else { cells - 1 - rho };
+            let row = other.rem_euclid(angles) as usize * cells as usize;
+            let (first, last) =
+                (rho.saturating_sub(peaks.near_rho_px), rho.saturating_add(peaks.near_rho_px));
+            silenced[row + first as usize..=row + last.min(cells - 1) as usize].fill(true);
+        }
     }
 
     fn line(&self, (angle, rho): (u32, u32), votes: u32) -> Line {

@@ -51,15 +51,18 @@ impl Interpolation {
         }
         let columns = self.all_taps(plane.width(), size.width);
         let rows = self.all_taps(plane.height(), size.height);
+        let mut widened = Plane::zeros(SizePx { width: size.width, height: plane.height() });
+        for y in 0..plane.height() {
+            let from = plane.row(y);
+            for (value, taps) in widened.row_mut(y).iter_mut().zip(&columns) {
+                *value = taps.iter().map(|(place, weight)| weight * from[place as usize]).sum();
+            }
+        }
         let mut result = Plane::zeros(size);
         for (y, taps) in (0..size.height).zip(&rows) {
-            let row = result.row_mut(y);
             for (place, weight) in taps.iter() {
-                let from = plane.row(place as u32);
-                for (value, columns) in row.iter_mut().zip(&columns) {
-                    let along = columns.iter().map(|(place, weight)| weight * from[place as usize]);
-                    *value += weight * along.sum::<f32>();
-                }
+                let row = result.row_mut(y).iter_mut().zip(widened.row(place as u32));
+                row.for_each(|(value, &from)| *value += weight * from);
             }
         }
         result

@@ -10,18 +10,27 @@ use super::plane::Plane;
 /// as MATLAB has it (Fig 2.1 uses 2 × 2). A window of even size has one pixel more before its middle than after it.
 #[must_use]
 pub fn median(plane: &Plane, width: NonZeroU16, height: NonZeroU16, border: Border) -> Plane {
+    let (window_width, window_height) = (usize::from(width.get()), usize::from(height.get()));
     let columns = border.places(plane.width(), width.get().into());
     let rows = border.places(plane.height(), height.get().into());
-    let mut window = Vec::with_capacity(usize::from(width.get()) * usize::from(height.get()));
-    Plane::from_fn(plane.size(), |x, y| {
-        window.clear();
-        for row in &rows[y as usize..][..height.get().into()] {
+    // The rows under the window, continued beyond the picture's edges.
+    let mut strips = vec![vec![0.0; columns.len()]; window_height];
+    let mut window = Vec::with_capacity(window_width * window_height);
+    let mut result = Plane::zeros(plane.size());
+    for y in 0..plane.height() {
+        for (strip, row) in strips.iter_mut().zip(&rows[y as usize..]) {
             let row = row.map(|row| plane.row(row as u32));
-            let columns = &columns[x as usize..][..width.get().into()];
-            window.extend(columns.iter().map(|column| row.zip(*column).map_or(0.0, |(row, x)| row[x])));
+            for (value, column) in strip.iter_mut().zip(&columns) {
+                *value = row.zip(*column).map_or(0.0, |(row, x)| row[x]);
+            }
         }
-        middle(&mut window)
-    })
+        for (x, value) in result.row_mut(y).iter_mut().enumerate() {
+            window.clear();
+            strips.iter().for_each(|strip| window.extend_from_slice(&strip[x..x + window_width]));
+            *value = middle(&mut window);
+        }
+    }
+    result
 }
 
 /// The median of at least one value.

@@ -183,8 +183,11 @@ impl Ncc {
 
     /// The spectra of the region's channels.
     fn transform(&mut self, frame: &Frame, region: RectPx) {
-        let size = SizePx { width: fast_length(region.width), height: fast_length(region.height) };
-        if self.fourier.as_ref().map(Fourier::size) != Some(size) {
+        let suits = |has: u32, needed: u32| needed <= has && has <= 2 * fast_length(needed);
+        // A gate that is cut off at the frame's edge needs no plan of its own.
+        let planned = self.fourier.as_ref().map(Fourier::size);
+        if !planned.is_some_and(|has| suits(has.width, region.width) && suits(has.height, region.height)) {
+            let size = SizePx { width: fast_length(region.width), height: fast_length(region.height) };
             self.fourier = Fourier::new(size).ok();
             self.templates.iter_mut().for_each(|template| template.spectra.clear());
         }
