@@ -21,10 +21,10 @@ SIZES = [(640, 480), (1280, 720), (1920, 1080)]
 
 
 def smallest_us(run):
-    """CPU time of this thread: the smallest of several runs, at least two, within about a third of a second."""
+    """CPU time of this thread: the smallest of several runs, at least five, within about a third of a second."""
     smallest, end = float("inf"), time.thread_time() + 0.3
     for number in range(50):
-        if number >= 2 and time.thread_time() > end:
+        if number >= 5 and time.thread_time() > end:
             break
         start = time.thread_time()
         run()

@@ -181,8 +181,8 @@ def correlation_coefficients(picture):
     numerator = variance = 0
     for channel in range(picture.shape[2]):
         levels = picture[:, :, channel]
-        numerator = numerator + signal.correlate(levels - 128, deviations[:, :, channel], mode="valid", method="direct")
-        total, squares = (signal.correlate(what, ones, mode="valid", method="direct") for what in (levels, levels**2))
+        numerator = numerator + signal.correlate(levels - 128, deviations[:, :, channel], mode="valid")
+        total, squares = (signal.correlate(what, ones, mode="valid") for what in (levels, levels**2))
         variance = variance + squares - total**2 / samples
     return numpy.where(variance > 0.5, numerator / numpy.sqrt(numpy.maximum(variance, 0.5) * (deviations**2).sum()), 0)
 
