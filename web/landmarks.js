@@ -1,5 +1,6 @@
 // The landmark table: what is looked for, what was observed, and why not.
 
+import { Problem, getJson } from "./api.js";
 import { ask } from "./changes.js";
 import { byId, make, makeState, reconcile, setText, showState } from "./dom.js";
 import { STALE_AFTER_MS, frameAgeMs, known, shownEntry } from "./state.js";
@@ -49,7 +50,7 @@ function makeRow(key) {
   const name = make("th", "", make("span", "name"), make("span", "kind quiet"));
   name.scope = "row";
   const result = make("td", "result", makeState());
-  if (!isFollower()) result.append(makeRetire(key));
+  result.append(...(isFollower() ? makeWhyNot(key) : [makeRetire(key)]));
   const [mean, variance] = ["mean", "variance"].map((kind) =>
     make("td", kind, make("div", "channels", ...["R", "G", "B"].map(makeStatistic))));
   mean.dataset.label = "Mean, levels";
@@ -64,17 +65,51 @@ function makeRow(key) {
   return row;
 }
 
+/** Asks the service to look at every window of the newest frame. @param {string} key */
+function makeWhyNot(key) {
+  const id = key.split("#")[0];
+  const words = make("p", "why quiet");
+  words.setAttribute("role", "status");
+  const button = make("button", "", "Why not?");
+  button.type = "button";
+  button.setAttribute("aria-label", `Why not? ${id}`);
+  button.addEventListener("click", async () => {
+    try {
+      const camera = encodeURIComponent(known.camera ?? "");
+      setText(words, explanation(await getJson(`/api/v1/cameras/${camera}/explanations/${encodeURIComponent(id)}`)));
+    } catch (error) {
+      setText(words, error instanceof Problem ? error.message : "The service does not answer.");
+    }
+  });
+  return [button, words];
+}
+
+/** What decided, as `waymark explain` says it. @param {any} answer */
+export function explanation(answer) {
+  const where = typeof answer.x_px === "number" ? ` at ${answer.x_px.toFixed(0)}, ${answer.y_px.toFixed(0)} px` : "";
+  const verdict = answer.reason ?? "registered";
+  const outside = answer.statistics
+    .filter((/** @type {any} */ one) => one.excess === null || one.excess > 1)
+    .map((/** @type {any} */ one) => `${one.statistic} ${one.observed.toFixed(0)} instead of ${one.expected.toFixed(0)} ± ${one.tolerance.toFixed(0)} ${one.unit}`);
+  const figures = outside.length > 0 ? ` Outside${where}: ${outside.join("; ")}.` : ` All six statistics fit${where}.`;
+  return `Frame ${answer.sequence}: ${verdict}.${figures}`;
+}
+
 /** A leader may take a landmark back; the first press asks, the second does it. @param {string} key */
 function makeRetire(key) {
   const id = key.split("#")[0];
   const button = make("button", "", "Retire");
   button.type = "button";
-  button.setAttribute("aria-label", `Retire ${id}`);
-  const calm = () => setText(button, "Retire");
+  const say = (/** @type {string} */ words) => {
+    setText(button, words);
+    button.setAttribute("aria-label", `${words}: ${id}`);
+  };
+  const calm = () => say("Retire");
+  calm();
   button.addEventListener("blur", calm);
   button.addEventListener("click", async () => {
     if (button.textContent === "Retire") {
-      setText(button, "Really retire it");
+      say("Really retire it");
       return;
     }
     calm();
@@ -96,12 +131,21 @@ function fillRow(row, { landmark, entry, several }, ageMs) {
   const comparison = compare(landmark, entry.observed ?? entry.miss?.observed, entry.gain);
   const shade = comparison.shades > 1 ? ` · shade ${comparison.shade} of ${comparison.shades}` : "";
   setText(name.children[1], `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}`);
-  const retire = /** @type {HTMLButtonElement | undefined} */ (result.children[1]);
-  if (retire) retire.disabled = known.access === "read_only";
+  showButton(result, entry);
   fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry, ageMs, landmark.revision);
   comparison.mean.forEach((one, index) => fillStatistic(mean.children[0].children[index], one));
   comparison.variance.forEach((one, index) => fillStatistic(variance.children[0].children[index], one));
   fillFacts(facts.firstElementChild, entry);
+}
+
+/** A follower may be asked why not, where a landmark is missed; a leader may retire. @param {Element} result @param {any} entry */
+function showButton(result, entry) {
+  const [, button, words] = /** @type {HTMLElement[]} */ ([...result.children]);
+  if (isFollower()) {
+    const isMissed = entry.result !== null && entry.result !== "measured" && !known.playbackEntry;
+    // Once asked, the words stay until the next question: landmarks come and go within a moment.
+    button.hidden = !isMissed && words?.textContent === "";
+  } else /** @type {HTMLButtonElement} */ (button).disabled = known.access === "read_only";
 }
 
 /** @param {HTMLElement} state @param {any} entry @param {number | null} ageMs @param {number} revision */
@@ -140,12 +184,21 @@ function fillFacts(list, entry) {
     ["Shape", figure(entry.shape_score, 2)],
     ["Gain", typeof entry.gain === "number" ? `× ${entry.gain.toFixed(2)}` : MISSING],
     ["Off prediction", figure(entry.innovation_px, 1, "px")],
+    ["Bearing", bearing(entry.bearing_rad)],
+    ["Range", figure(entry.range_m, 1, "m")],
   ];
   while (list.children.length < facts.length) list.append(make("div", "", make("dt"), make("dd")));
   facts.forEach(([name, value], index) => {
     setText(list.children[index].children[0], name);
     setText(list.children[index].children[1], value);
   });
+}
+
+/** @param {number | null | undefined} bearingRad positive to the left */
+function bearing(bearingRad) {
+  if (typeof bearingRad !== "number") return MISSING;
+  const degrees = (Math.abs(bearingRad) * 180) / Math.PI;
+  return `${degrees.toFixed(1)}° ${degrees < 0.05 ? "ahead" : bearingRad > 0 ? "left" : "right"}`;
 }
 
 /** Where it is, or where it was expected. @param {any} entry @returns {[string, string]} */

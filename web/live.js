@@ -178,6 +178,7 @@ function describe() {
 /** Offers the layers that the service can draw. */
 export function showLayers() {
   const layers = known.layers ?? [];
+  byId("layers").hidden = layers.length === 0;
   for (const layer of layers) if (!OFF_AT_FIRST.has(layer)) known.layersOn.add(layer);
   reconcile(byId("layers"), keptLayers, ["legend", ...layers], (layer) => {
     if (layer === "legend") return /** @type {HTMLElement} */ (byId("layers").firstElementChild);

@@ -117,18 +117,17 @@ function step(frames) {
   seek((current?.frame ?? 0) + frames);
 }
 
-/** @param {string} text @param {string} label @param {() => void} act */
-function button(text, label, act) {
+/** @param {string} text @param {() => void} act */
+function button(text, act) {
   const made = make("button", "", text);
   made.type = "button";
-  made.setAttribute("aria-label", label);
   made.addEventListener("click", act);
   return made;
 }
 
 /** Makes the controls. */
 export function startPlayback() {
-  const toggle = button("Pause", "Pause or go on", () => {
+  const toggle = button("Pause", () => {
     if (current?.running) halt();
     else run();
     showPlayback();
@@ -153,8 +152,8 @@ export function startPlayback() {
     if (wasRunning) run();
   });
   byId("playback").append(
-    button("−1", "One frame back", () => step(-1)), toggle, button("+1", "One frame on", () => step(1)),
-    slider, make("span", "facts time"), make("label", "", "Speed ", speed), button("Back to live", "Back to the live picture", leave),
+    button("Frame back", () => step(-1)), toggle, button("Frame on", () => step(1)),
+    slider, make("span", "facts time"), make("label", "", "Speed ", speed), button("Back to live", leave),
   );
 }
 

@@ -3,6 +3,7 @@
 import { byId, make, setText } from "./dom.js";
 import { PLOTS, SPAN_S, linesOf, remember, valueAt } from "./history.js";
 import { known } from "./state.js";
+import { loadPainter } from "./uplot_plots.js";
 import { figure } from "./words.js";
 
 const DASHES = [[], [6, 3], [2, 2], [8, 3, 2, 3], [12, 4], [1, 3]];
@@ -14,6 +15,9 @@ let cursorS = null;
 /** @type {{canvas: HTMLCanvasElement, legend: HTMLElement, scale: HTMLElement}[]} */
 let made = [];
 
+/** Plots by uPlot, where this build has it. @type {import("./uplot_plots.js").Painter | null} */
+let painter = null;
+
 /** @param {any} camera */
 export function samplePlots(camera) {
   remember(camera, performance.now());
@@ -21,7 +25,7 @@ export function samplePlots(camera) {
 
 function makePlots() {
   made = PLOTS.map((plot) => {
-    const canvas = make("canvas");
+    const canvas = make("canvas", "area");
     canvas.setAttribute("role", "img");
     const legend = make("ul", "legend plain");
     const scale = make("span", "scale quiet");
@@ -36,12 +40,17 @@ function makePlots() {
   grid.addEventListener("pointermove", onPointer);
   grid.addEventListener("pointerleave", () => moveCursor(null));
   grid.addEventListener("keydown", onKey);
+  void loadPainter().then((found) => {
+    painter = found;
+    byId("plots-note").hidden = found !== null;
+  });
 }
 
 /** @param {PointerEvent} event */
 function onPointer(event) {
-  if (!(event.target instanceof HTMLCanvasElement)) return;
-  const box = event.target.getBoundingClientRect();
+  const area = event.target instanceof Element ? event.target.closest(".area") : null;
+  if (!area) return;
+  const box = area.getBoundingClientRect();
   moveCursor(SPAN_S * (1 - (event.clientX - box.left) / box.width));
 }
 
@@ -80,6 +89,12 @@ export function drawPlots() {
 function drawPlot({ canvas, legend, scale }, plot, lines, now, style) {
   const [low, high] = plot.top ? [0, plot.top] : range(lines);
   setText(scale, lines.length > 0 ? `${low.toFixed(plot.digits)} to ${high.toFixed(plot.digits)}` : "no data");
+  const colours = lines.map(([name], index) => lineColour(name, index, style));
+  showLegend(legend, plot, lines, colours, now);
+  if (painter) {
+    painter.draw(canvas, { plot, lines, colours, dashes: DASHES, low, high, now, cursorS, style });
+    return;
+  }
   const pen = fit(canvas);
   if (!pen) return;
   const { width, height } = canvas.getBoundingClientRect();
@@ -88,14 +103,12 @@ function drawPlot({ canvas, legend, scale }, plot, lines, now, style) {
     height - PADDING_PX.bottom - ((value - low) / (high - low || 1)) * (height - PADDING_PX.top - PADDING_PX.bottom);
   pen.clearRect(0, 0, width, height);
   drawGrid(pen, width, height, style);
-  const colours = lines.map(([name], index) => lineColour(name, index, style));
   lines.forEach(([, samples], index) => {
     pen.strokeStyle = colours[index];
     pen.setLineDash(DASHES[index]);
     drawLine(pen, samples, x, y);
   });
   if (cursorS !== null) drawCursor(pen, width * (1 - cursorS / SPAN_S), height, style);
-  showLegend(legend, plot, lines, colours, now);
   canvas.setAttribute("aria-label", `${plot.name}, last ${SPAN_S} s; the values are listed below`);
 }
 

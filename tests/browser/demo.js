@@ -22,13 +22,19 @@ export async function freePort() {
   return port;
 }
 
+/** The program that is tested. */
+export function binary() {
+  const found = PLACES.find((place) => place && existsSync(place));
+  if (!found) throw new Error("no binary to test: build it with cargo or set WAYMARK_BIN");
+  return found;
+}
+
 /** Starts `waymark demo` and waits until its camera is live. */
 export async function startDemo({ port = 0 } = {}) {
-  const binary = PLACES.find((place) => place && existsSync(place));
-  if (!binary) throw new Error("no binary to test: build it with cargo or set WAYMARK_BIN");
+  const path = binary();
   const recordings = await mkdtemp(join(tmpdir(), "waymark-browser-"));
   const [http, leader] = [port || (await freePort()), await freePort()];
-  const program = spawn(binary, [
+  const program = spawn(path, [
     "demo", "--headless", "--duration", "600s", "--listen", `127.0.0.1:${http}`,
     "--leader-listen", `127.0.0.1:${leader}`, "--recordings", recordings,
   ], { stdio: ["ignore", "pipe", "pipe"] });

@@ -26,21 +26,49 @@ after(async () => {
 const PHONE = { width: 360, height: 740 };
 const DESK = { width: 1280, height: 800 };
 
+/** What axe finds on the page as it is now. @param {import("playwright-core").Page} page */
+async function found(page) {
+  await page.evaluate(AXE);
+  // @ts-ignore the line above defines axe
+  const { violations } = await page.evaluate(() => window.axe.run());
+  return violations.map((/** @type {any} */ one) => `${one.id}: ${one.nodes.map((/** @type {any} */ node) => node.html).join(" ")}`);
+}
+
 for (const [screen, viewport] of Object.entries({ phone: PHONE, desk: DESK })) {
   for (const colorScheme of /** @type {const} */ (["light", "dark"])) {
     test(`axe finds nothing: ${screen}, ${colorScheme}`, async () => {
       const { page, complaints, close } = await openWatched(browser, demo.url, { viewport, colorScheme, bypassCSP: true });
       await page.locator("#landmarks .result .words").first().waitFor();
-      await page.evaluate(AXE);
-      // @ts-ignore the line above defines axe
-      const { violations } = await page.evaluate(() => window.axe.run());
-      const found = violations.map((/** @type {any} */ one) => `${one.id}: ${one.nodes.map((/** @type {any} */ node) => node.html).join(" ")}`);
-      assert.deepEqual(found, []);
+      await page.locator("#recordings li").first().waitFor();
+      assert.deepEqual(await found(page), []);
+      assert.deepEqual(complaints, []);
+      await close();
+    });
+
+    test(`axe finds nothing while a landmark is learned: ${screen}, ${colorScheme}`, async () => {
+      const { page, complaints, close } = await openWatched(browser, demo.leaderUrl, { viewport, colorScheme, bypassCSP: true });
+      await page.getByRole("button", { name: "Take this picture" }).click();
+      for (const label of ["Left px", "Top px", "Width px", "Height px"]) {
+        await page.getByLabel(label, { exact: true }).fill("100");
+        await page.keyboard.press("Tab");
+      }
+      await page.locator("#teach-verdict").getByText(/Registration finds/).waitFor();
+      assert.deepEqual(await found(page), []);
       assert.deepEqual(complaints, []);
       await close();
     });
   }
 }
+
+test("axe finds nothing while a recording is looked at", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url, { viewport: PHONE, bypassCSP: true });
+  await page.getByRole("button", { name: "Split into a new file" }).click();
+  await page.getByRole("button", { name: "Look at it" }).and(page.locator(":enabled")).first().click();
+  await page.locator("#frame-facts").getByText(/recorded/).waitFor();
+  assert.deepEqual(await found(page), []);
+  assert.deepEqual(complaints, []);
+  await close();
+});
 
 for (const width of [360, 768, 1280, 1920, 3840]) {
   test(`nothing sticks out at ${width} px`, async () => {

@@ -116,7 +116,7 @@ test("plots share one cursor, moved by pointer or keys", async () => {
     page.waitForFunction((text) => document.querySelector("#plot-moment")?.textContent === text, text);
   // The page has found its shape once the tables above the plots are filled.
   await page.locator("#landmarks .result .words").first().waitFor();
-  await page.locator("#plots canvas").first().waitFor();
+  await page.locator("#plots .area:visible").first().waitFor();
   await page.locator("#plots").focus();
   await page.keyboard.press("ArrowLeft");
   await page.keyboard.press("ArrowLeft");
@@ -126,7 +126,7 @@ test("plots share one cursor, moved by pointer or keys", async () => {
   // What moves the plots away from the pointer must not fail this: the pointer follows.
   let seen = "now";
   for (let tries = 0; tries < 50 && seen !== "30 s ago"; tries += 1) {
-    await page.locator("#plots canvas").first().hover();
+    await page.locator("#plots .area:visible").first().hover();
     await page.waitForFunction(() => document.querySelector("#plot-moment")?.textContent !== "now");
     seen = (await page.locator("#plot-moment").textContent()) ?? "";
   }
@@ -172,6 +172,21 @@ test("the fleet names everyone who is announced, with the state of each in words
   const lines = await page.locator("#fleet li").allInnerTexts();
   assert.ok(lines.some((line) => /leader/.test(line)) && lines.some((line) => /follower \(this one\)/.test(line)), lines.join("\n"));
   for (const line of lines) assert.match(line, /answers[^]*version \d/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a landmark that is missed is explained on request, as the command line does", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  const statistics = (/** @type {number} */ level) => ({ mean: [0, level, 0], variance: [level, level, level] });
+  const nowhere = { window_px: [12, 12], shape: "any", shades: [statistics(255)], tolerance: statistics(1) };
+  const address = `${demo.leaderUrl}/api/v1/landmarks/nowhere`;
+  const published = await fetch(address, { method: "PUT", headers: { "content-type": "application/json" }, body: JSON.stringify(nowhere) });
+  assert.equal(published.status, 200);
+  const ask = page.getByRole("button", { name: "Why not? nowhere" });
+  await ask.click({ timeout: 60_000 });
+  await page.locator(".why").getByText(/^Frame \d+: no window matched; the nearest one fails by .+ instead of 255 ± /).waitFor();
+  assert.equal((await fetch(address, { method: "DELETE" })).status, 200);
   assert.deepEqual(complaints, []);
   await close();
 });

@@ -34,7 +34,7 @@ test("a recording takes the place of the live picture, is scrubbed, and gives th
   await line.getByRole("button", { name: "Look at it" }).click();
   await page.locator("#live-title").getByText(/^Recording follower-/).waitFor();
   await page.locator("#frame-facts").getByText(/recorded/).waitFor();
-  await page.getByRole("button", { name: "Pause or go on" }).click();
+  await page.locator("#playback-toggle").click();
   await page.locator("#playback-toggle").getByText("Play").waitFor();
   const slider = page.locator("#playback-frame");
   const last = Number(await slider.getAttribute("max"));
@@ -48,9 +48,9 @@ test("a recording takes the place of the live picture, is scrubbed, and gives th
   await slider.focus();
   await page.keyboard.press("ArrowRight");
   await shows(middle + 1);
-  await page.getByRole("button", { name: "One frame back" }).click();
+  await page.getByRole("button", { name: "Frame back" }).click();
   await shows(middle);
-  await page.getByRole("button", { name: "Back to the live picture" }).click();
+  await page.getByRole("button", { name: "Back to live" }).click();
   await page.locator("#frame-facts").getByText(/fps shown/).waitFor();
   assert.equal(await page.locator("#live-title").textContent(), "Live");
   assert.deepEqual(complaints, []);

@@ -57,8 +57,8 @@ test("a box on the live picture becomes a landmark that followers look for, unti
   await page.locator("#landmarks .name", { hasText: /^by-hand$/ }).waitFor();
   const known = async () => (await (await fetch(`${demo.url}/api/v1/landmarks`)).json()).landmarks.map((/** @type {any} */ one) => one.id);
   await until(async () => (await known()).includes("by-hand"));
-  await page.getByRole("button", { name: "Retire by-hand" }).click();
-  await page.getByRole("button", { name: "Retire by-hand" }).getByText("Really retire it").click();
+  await page.getByRole("button", { name: "Retire: by-hand" }).click();
+  await page.getByRole("button", { name: "Really retire it: by-hand" }).click();
   await page.locator("#landmarks .name", { hasText: /^by-hand$/ }).waitFor({ state: "detached" });
   await until(async () => !(await known()).includes("by-hand"));
   await page.getByRole("button", { name: "Back to live" }).click();

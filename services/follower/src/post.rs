@@ -79,6 +79,7 @@ impl Post {
         let (mailbox, journal_of_intake) = (thread.mailbox(), Arc::clone(journal));
         let intake =
             Intake::new(topics.clone(), journal_of_intake, mailbox, video.queue(), Arc::clone(&counters));
+        let of_station = surroundings.clone();
         let results =
             Results::declare(session, own, &id, topics, options, Arc::clone(journal), surroundings).await?;
         let slot = burned_in.as_ref().map(BurnedIn::slot);
@@ -88,7 +89,7 @@ impl Post {
             thread: thread.counters(),
             burned_in: slot.clone(),
         };
-        let station = Arc::new(Station::new(id.as_str(), thread.mailbox(), losses, newest));
+        let station = Arc::new(Station::new(id.as_str(), thread.mailbox(), losses, newest, of_station));
         let results = results.drawn_into(slot);
         Ok(Self { id, thread, video, intake, results, waiting, burned_in, station, pinhole })
     }

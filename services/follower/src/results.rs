@@ -23,6 +23,7 @@ use crate::topics::CameraTopics;
 use crate::web::Face;
 
 /// What places are computed with.
+#[derive(Clone, Debug)]
 pub(crate) struct Surroundings {
     /// The landmarks in force, for their sizes.
     pub(crate) landmarks: watch::Receiver<Arc<LandmarkSet>>,
@@ -31,7 +32,7 @@ pub(crate) struct Surroundings {
 }
 
 impl Surroundings {
-    fn places(&self, outcome: &Outcome) -> Vec<Place> {
+    pub(crate) fn places(&self, outcome: &Outcome) -> Vec<Place> {
         places(outcome, &self.landmarks.borrow(), self.pinhole.borrow().as_ref())
     }
 }

@@ -13,6 +13,7 @@ use tokio::sync::watch;
 use crate::burned_in;
 use crate::counters::IntakeCounters;
 use crate::fps::RateMeter;
+use crate::results::Surroundings;
 use crate::status::{CameraStatus, Dropped, landmarks_from_outcome};
 use crate::tap::now_ns;
 
@@ -34,6 +35,7 @@ pub(crate) struct Station {
     mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
     losses: Losses,
     latest: watch::Receiver<Option<Arc<Registered>>>,
+    surroundings: Surroundings,
     rate: Mutex<RateMeter>,
 }
 
@@ -43,9 +45,10 @@ impl Station {
         mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
         losses: Losses,
         latest: watch::Receiver<Option<Arc<Registered>>>,
+        surroundings: Surroundings,
     ) -> Self {
         let rate = Mutex::new(RateMeter::over(RATE_SPAN));
-        Self { id: id.to_owned(), mailbox, losses, latest, rate }
+        Self { id: id.to_owned(), mailbox, losses, latest, surroundings, rate }
     }
 
     pub(crate) fn id(&self) -> &str {
@@ -114,7 +117,9 @@ impl Station {
                 .as_ref()
                 .map(|newest| milliseconds(newest.decode_time + newest.register_time)),
             dropped: self.dropped(),
-            landmarks: newest.map_or_else(Vec::new, |newest| landmarks_from_outcome(&newest.outcome)),
+            landmarks: newest.map_or_else(Vec::new, |newest| {
+                landmarks_from_outcome(&newest.outcome, &self.surroundings.places(&newest.outcome))
+            }),
         }
     }
 }

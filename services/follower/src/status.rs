@@ -4,7 +4,7 @@ use runtime::clock::ClockOffset;
 use schemars::JsonSchema;
 use serde::Serialize;
 use vision::outcome::{LandmarkOutcome, Miss};
-use vision::{ColorStats, Outcome};
+use vision::{ColorStats, Outcome, Place};
 
 /// What one vehicle says of itself.
 #[derive(Clone, Debug, JsonSchema, Serialize)]
@@ -177,6 +177,10 @@ pub struct LandmarkStatus {
     pub shape_score: Option<f32>,
     /// Distance of the measurement from its prediction.
     pub innovation_px: Option<f32>,
+    /// Direction, rad, positive to the left of the optical axis; missing without a calibration.
+    pub bearing_rad: Option<f32>,
+    /// Distance, m; missing also where the object's size is unknown.
+    pub range_m: Option<f32>,
     /// Observed brightness over the descriptor's.
     pub gain: Option<f32>,
     /// Expected centre before the measurement.
@@ -255,13 +259,14 @@ impl From<recording::Status> for RecorderStatus {
     }
 }
 
-/// What one frame said about every landmark, for status and events.
+/// What one frame said about every landmark, for status and events; `places` as far as they are known, in the same order.
 #[must_use]
-pub fn landmarks_from_outcome(outcome: &Outcome) -> Vec<LandmarkStatus> {
-    outcome.landmarks.iter().map(landmark_from_outcome).collect()
+pub fn landmarks_from_outcome(outcome: &Outcome, places: &[Place]) -> Vec<LandmarkStatus> {
+    let places = places.iter().copied().chain(std::iter::repeat(Place::default()));
+    outcome.landmarks.iter().zip(places).map(|(one, place)| landmark_from_outcome(one, place)).collect()
 }
 
-fn landmark_from_outcome(outcome: &LandmarkOutcome) -> LandmarkStatus {
+fn landmark_from_outcome(outcome: &LandmarkOutcome, place: Place) -> LandmarkStatus {
     let sighting = outcome.result.as_ref().ok();
     let miss = outcome.result.as_ref().err();
     let prediction = outcome.prediction;
@@ -275,6 +280,8 @@ fn landmark_from_outcome(outcome: &LandmarkOutcome) -> LandmarkStatus {
         score: sighting.map(|sighting| sighting.score),
         shape_score: sighting.and_then(|sighting| sighting.shape_score),
         innovation_px: outcome.innovation_px,
+        bearing_rad: place.bearing_rad,
+        range_m: place.range_m,
         gain: outcome.adaptation.map(|adaptation| adaptation.gain),
         predicted_x_px: prediction.map(|prediction| prediction.centroid.x),
         predicted_y_px: prediction.map(|prediction| prediction.centroid.y),

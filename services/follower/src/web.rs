@@ -1,5 +1,7 @@
 //! The follower's routes (contract section 8) on the shared web face.
 
+mod explanations;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -18,7 +20,7 @@ use recording::{Command, Journal};
 use runtime::link_trouble;
 use runtime::session::{Mode, is_router_connected};
 use serde_json::json;
-use tokio::sync::watch;
+use tokio::sync::{Semaphore, watch};
 use vision::LandmarkSet;
 use waymark_proto::documents::{LandmarkDocument, SetDocument};
 use zenoh::Session;
@@ -51,12 +53,16 @@ pub(crate) struct Face {
     pub(crate) events: Arc<Events>,
     pub(crate) landmark_counters: Arc<crate::counters::LandmarkCounters>,
     pub(crate) recordings: PathBuf,
+    pub(crate) search: vision::Mode,
+    /// Explanations worked on at once: each takes a core for some 50 ms.
+    pub(crate) explainers: Arc<Semaphore>,
 }
 
 /// All routes of a follower.
 pub(crate) fn routes(face: &Arc<Face>) -> Router {
     let api = Api::new("Waymark follower", env!("CARGO_PKG_VERSION"));
     let api = face.cameras.routes(service_routes(api, face));
+    let api = explanations::routes(api, face);
     let api = recordings::routes(landmarks(api, face), Shelf::new(&face.recordings, face.landmarks.clone()));
     api.undescribed(page()).finish()
 }
@@ -119,6 +125,8 @@ impl Face {
             events: Arc::new(Events::new(EVENTS_KEPT)),
             landmark_counters: feed.counters(),
             recordings: config.recorder.directory.clone(),
+            search: config.follow_options().mode,
+            explainers: Arc::new(Semaphore::new(1)),
         }
     }
 

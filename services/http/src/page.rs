@@ -1,6 +1,6 @@
 //! The inspection page, embedded at build time from `web/`.
 
-use crate::conditional::{conditional, tag_from_digest};
+use crate::conditional::{conditional, entity_tag, tag_from_digest};
 use crate::problem::Problem;
 use axum::Router;
 use axum::body::Bytes;
@@ -12,18 +12,31 @@ use std::borrow::Cow;
 
 #[derive(RustEmbed)]
 #[folder = "../../web"]
+#[exclude = "node_modules/*"]
 #[include = "*.html"]
 #[include = "*.css"]
 #[include = "*.js"]
 #[include = "*.svg"]
 struct Files;
 
+/// What the build fetched from npm, or what says that it did not.
+const FETCHED: [(&str, &[u8]); 2] = [
+    ("uplot.js", include_bytes!(concat!(env!("OUT_DIR"), "/uplot.js"))),
+    ("uplot.css", include_bytes!(concat!(env!("OUT_DIR"), "/uplot.css"))),
+];
+
 /// Routes for the page: `/` and a route for each file it loads, with entity tags. Nothing else is served.
 pub fn page() -> Router {
     let files = Files::iter().map(|name| (format!("/{name}"), name.into_owned()));
     let aliases = [("/", "index.html"), ("/favicon.ico", "icon.svg")];
     let aliases = aliases.map(|(path, name)| (path.to_owned(), name.to_owned()));
-    files.chain(aliases).fold(Router::new(), |router, (path, name)| {
+    let router = FETCHED.into_iter().fold(Router::new(), |router, (name, content)| {
+        let answer = async move |headers: HeaderMap| {
+            conditional(&headers, &entity_tag(content), content_type(name), Bytes::from_static(content))
+        };
+        router.route(&format!("/{name}"), get(answer))
+    });
+    files.chain(aliases).fold(router, |router, (path, name)| {
         router.route(&path, get(async move |headers: HeaderMap| file(&name, &headers)))
     })
 }

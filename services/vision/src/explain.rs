@@ -57,6 +57,43 @@ impl Explanation {
         failures.sort_by(|a, b| b.excess.total_cmp(&a.excess));
         failures
     }
+
+    /// Why it was not registered, in words; `None` when it was.
+    #[must_use]
+    pub fn reason(&self) -> Option<String> {
+        let miss = self.outcome.result.as_ref().err()?;
+        Some(match (miss, self.failures().as_slice()) {
+            (Miss::NoColour { .. }, []) => {
+                "single windows fit its statistics, but nothing stands out from its surroundings as the object"
+                    .to_owned()
+            }
+            (Miss::NoColour { .. }, [worst, ..]) => format!(
+                "no window matched; the nearest one fails by {} most, {:.1} times what is allowed",
+                worst.statistic.in_words(),
+                worst.excess
+            ),
+            (Miss::TooSmall, _) => "the object or the picture is smaller than the averaging window".to_owned(),
+            (Miss::WrongShape { score }, _) => {
+                format!("its colour was there, but the outline fits only to {score:.2}")
+            }
+            (Miss::OutsideGate { innovation_px }, _) => format!("what matched was {innovation_px:.0} px off"),
+            (Miss::Occluded { visible }, _) => format!("only {:.0} % of it can be seen", 100.0 * visible),
+            (Miss::OutsideFrame, _) => "it is expected outside the picture".to_owned(),
+            (Miss::Skipped, _) => "not looked for: the bound on work per frame was reached".to_owned(),
+        })
+    }
+}
+
+impl Statistic {
+    /// `mean red`, `variance blue`.
+    #[must_use]
+    pub fn in_words(self) -> String {
+        let (kind, channel) = match self {
+            Self::Mean(channel) => ("mean", channel),
+            Self::Variance(channel) => ("variance", channel),
+        };
+        format!("{kind} {}", ["red", "green", "blue"].get(usize::from(channel)).unwrap_or(&"?"))
+    }
 }
 
 /// Explains what `mode` makes of `landmark` in `frame`, nothing known from earlier frames.

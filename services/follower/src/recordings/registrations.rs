@@ -42,7 +42,7 @@ impl From<&Outcome> for RegistrationEntry {
         Self {
             sequence: outcome.sequence,
             captured_at_ns: outcome.captured_at.nanos,
-            landmarks: landmarks_from_outcome(outcome),
+            landmarks: landmarks_from_outcome(outcome, &[]),
         }
     }
 }

@@ -9,7 +9,7 @@ use vision::explain::{Comparison, Explanation, explain};
 use vision::frame::encode::{Quality, encode_jpeg, encode_png};
 use vision::outcome::Statistic;
 use vision::overlay::{Layers, draw};
-use vision::{Frame, Landmark, Miss, Outcome, Prediction};
+use vision::{Frame, Landmark, Outcome, Prediction};
 
 use crate::columns::Columns;
 use crate::commands::register::ModeName;
@@ -81,29 +81,9 @@ fn verdict(landmark: &Landmark, explanation: &Explanation) -> String {
             "{} registered at {:.1}, {:.1}; {:.0} px², {shape}, score {:.2}",
             landmark.id, seen.centroid.x, seen.centroid.y, seen.area_px2, seen.score
         ),
-        Err(miss) => format!("{} not registered: {}", landmark.id, reason(miss, explanation)),
-    }
-}
-
-fn reason(miss: &Miss, explanation: &Explanation) -> String {
-    match (miss, explanation.failures().as_slice()) {
-        (Miss::NoColour { .. }, []) => {
-            "single windows fit its statistics, but nothing stands out from its surroundings as the object"
-                .to_owned()
+        Err(_) => {
+            format!("{} not registered: {}", landmark.id, explanation.reason().unwrap_or_default())
         }
-        (Miss::NoColour { .. }, [worst, ..]) => format!(
-            "no window matched; the nearest one fails by {} most, {:.1} times what is allowed",
-            name(worst.statistic),
-            worst.excess
-        ),
-        (Miss::TooSmall, _) => "the object or the picture is smaller than the averaging window".to_owned(),
-        (Miss::WrongShape { score }, _) => {
-            format!("its colour was there, but the outline fits only to {score:.2}")
-        }
-        (Miss::OutsideGate { innovation_px }, _) => format!("what matched was {innovation_px:.0} px off"),
-        (Miss::Occluded { visible }, _) => format!("only {:.0} % of it can be seen", 100.0 * visible),
-        (Miss::OutsideFrame, _) => "it is expected outside the picture".to_owned(),
-        (Miss::Skipped, _) => "not looked for: the bound on work per frame was reached".to_owned(),
     }
 }
 
@@ -114,21 +94,13 @@ fn statistics(comparisons: &[Comparison]) -> String {
         let numbers = [observed, expected, tolerance].map(|number| format!("{number:.1}"));
         let verdict = if *excess > 1.0 { "fails" } else { "fits" };
         table.row(
-            [name(*statistic), unit.to_owned()]
+            [statistic.in_words(), unit.to_owned()]
                 .into_iter()
                 .chain(numbers)
                 .chain([format!("{excess:.2}"), verdict.to_owned()]),
         );
     }
     table.text()
-}
-
-fn name(statistic: Statistic) -> String {
-    let (kind, channel) = match statistic {
-        Statistic::Mean(channel) => ("mean", channel),
-        Statistic::Variance(channel) => ("variance", channel),
-    };
-    format!("{kind} {}", ["red", "green", "blue"].get(usize::from(channel)).unwrap_or(&"?"))
 }
 
 /// Draws the outcome; a miss gets its cross where it came nearest.
