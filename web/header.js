@@ -19,7 +19,7 @@ export function items() {
   return [
     ...(status.leader ? [leader(status.leader)] : []),
     ...(status.leader?.clock ? [clock(status.leader.clock)] : []),
-    ...(status.role === "follower" ? cameras() : []),
+    ...(status.role === "follower" || known.cameras.size > 0 ? cameras() : []),
     ...(status.router ? [router(status.router)] : []),
     ...(status.recorder ? [recorder(status.recorder)] : []),
     service(status),
@@ -66,7 +66,9 @@ function camera(camera) {
   const age = frameAgeMs(camera);
   if (camera.state === "waiting" || age === null) return { name, level: "warn", words: "waiting for its first frame" };
   if (camera.state === "live" && age <= STALE_AFTER_MS) {
-    return { name, level: "good", words: `live, ${figure(camera.fps, 1, "fps")}, frame ${roundedAge(age)} old` };
+    // A leader only looks: it counts no frames.
+    const rate = typeof camera.fps === "number" ? `${figure(camera.fps, 1, "fps")}, ` : "";
+    return { name, level: "good", words: `live, ${rate}frame ${roundedAge(age)} old` };
   }
   return { name, level: "bad", words: `stopped, last frame ${duration(age / 1000)} old` };
 }
@@ -99,6 +101,7 @@ function recorder(recorder) {
 /** Shows what is known now. */
 export function showHeader() {
   const { status } = known;
+  document.body.dataset.role = status?.role ?? "";
   setText(byId("vehicle"), status?.vehicle ?? "Waymark");
   setText(byId("role"), status && status.role !== status.vehicle ? status.role : "");
   const all = items();

@@ -1,6 +1,7 @@
 // A recording that is looked at in the place of the live picture: which of its frames is wanted now.
 
 import { byId, make, setText } from "./dom.js";
+import { lesson } from "./lesson.js";
 import { known } from "./state.js";
 import { clock } from "./words.js";
 
@@ -162,7 +163,7 @@ export function showPlayback() {
   const place = byId("playback");
   place.hidden = !current;
   byId("live-controls").hidden = Boolean(current);
-  setText(byId("live-title"), current ? `Recording ${current.name}` : "Live");
+  setText(byId("live-title"), current ? `Recording ${current.name}` : lesson() ? "Picture to learn from" : "Live");
   if (!current) return;
   const frame = due(current);
   const slider = /** @type {HTMLInputElement} */ (byId("playback-frame"));

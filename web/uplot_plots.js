@@ -55,7 +55,7 @@ function create(uPlot, place, width, kept) {
     scales: { x: { time: false, range: [-SPAN_S, 0] }, y: { range: () => [kept.scene.low, kept.scene.high] } },
     axes: [
       { ...axis, size: 20, values: (/** @type {any} */ _, /** @type {number[]} */ ticks) => ticks.map((tick) => `${tick} s`) },
-      { ...axis, size: 42, values: (/** @type {any} */ _, /** @type {number[]} */ ticks) => ticks.map((tick) => tick.toFixed(tick > 10 ? 0 : plot.digits)) },
+      { ...axis, size: 42, values: (/** @type {any} */ _, /** @type {number[]} */ ticks) => ticks.map((tick) => label(tick, plot.digits)) },
     ],
     series: [{}, ...lines.map(([name], index) => ({
       label: name, stroke: colours[index], dash: dashes[index], width: 1.5, spanGaps: false, points: { show: false },
@@ -67,6 +67,12 @@ function create(uPlot, place, width, kept) {
   // Between the caption and the values.
   place.after(made.root);
   return made;
+}
+
+/** Counts have no halves. @param {number} tick @param {number} digits */
+function label(tick, digits) {
+  if (digits === 0 && !Number.isInteger(tick)) return "";
+  return tick.toFixed(tick > 10 ? 0 : digits);
 }
 
 /** One time axis for all lines: those of a camera are sampled together. @param {Scene} scene */

@@ -48,6 +48,11 @@ export async function startService(state, port, framesDir) {
   const routes = {
     "/api/v1/status": (response) => json(response, world.status()),
     "/api/v1/fleet": (response) => json(response, world.fleet()),
+    "/api/v1/recordings": (response) => json(response, world.recordings()),
+    "/uplot.js": (response) => {
+      response.writeHead(200, { "content-type": "text/javascript" });
+      response.end("export default null;");
+    },
     "/api/v1/landmarks": (response) => json(response, world.landmarks()),
     "/api/v1/cameras": (response) => json(response, { cameras: ["front"], layers: ["outline", "segments", "vector", "prediction", "gate", "mask", "labels"] }),
     "/api/v1/events": (response) => {

@@ -32,7 +32,7 @@ export function makeWorld(state) {
   const measured = (/** @type {any} */ one, /** @type {number} */ index) => ({
     id: one.id, instance: 0, result: "measured",
     x_px: 320 + 120 * Math.sin(sequence / 60 + index), y_px: 260 + noise(2), area_px2: 1840 + 300 * Math.sin(sequence / 90) + noise(20),
-    score: 0.91 + noise(0.04), shape_score: 0.84 + noise(0.05), innovation_px: Math.abs(noise(3)), gain: 0.96 + 0.08 * Math.sin(sequence / 100),
+    bearing_rad: 0.21 - 0.3 * index, range_m: 4.2 + index, score: 0.91 + noise(0.04), shape_score: 0.84 + noise(0.05), innovation_px: Math.abs(noise(3)), gain: 0.96 + 0.08 * Math.sin(sequence / 100),
     predicted_x_px: 320, predicted_y_px: 260,
     observed: {
       mean: one.shades[0].mean.map((/** @type {number} */ value) => value + noise(20)),
@@ -68,10 +68,16 @@ export function makeWorld(state) {
       { vehicle: "follower-2", role: "follower", instance: "b2", answers: state !== "one-lost", host: "car-2", version: state === "thirty" ? "0.2.0" : "0.1.0", clock: state === "one-lost" ? null : { offset_ms: 1.4, uncertainty_ms: 0.3, in_step: true } },
       ...(state === "leader-gone" ? [] : [{ vehicle: "lead", role: "leader", instance: "c3", answers: true, host: "truck", version: "0.1.0", clock: { offset_ms: state === "one-lost" ? -3210 : 0.4, uncertainty_ms: 0.2, in_step: state !== "one-lost" } }]),
     ] }),
+    recordings: () => ({ next: null, recordings: [3, 2, 1].map((number) => ({
+      name: `follower-1-20261122T18${number}604Z-000${number}.mcap`, vehicle: "follower-1", started_at: `20261122T18${number}604Z`,
+      state: number === 3 ? "unfinished" : "finished", bytes: number * 1_204_000_000,
+      duration_s: number === 3 ? null : 3599.4, messages: number === 3 ? null : 431_022,
+      cameras: number === 3 ? [] : [{ id: "front", frames: 107_982, registrations: 107_900 }],
+    })) }),
     landmarks: () => ({ version: { epoch: 3, version: 7 }, landmarks: set }),
     status: () => state === "leader" ? {
       vehicle: "lead", role: "leader", version: "0.1.0", uptime_s: 4021, router: { connected: true }, landmarks: set.length,
-      set: { epoch: 3, version: 7 }, edits: { made: 4, refused: 0 }, cameras: [],
+      set: { epoch: 3, version: 7 }, edits: { made: 4, refused: 0 }, cameras: [{ id: "front", state: "live", sequence, age_ms: 18 }],
     } : ({
       vehicle: "follower-1", role: "follower", version: "0.1.0", uptime_s: 4021 + (Date.now() - startedAt) / 1000,
       leader: { vehicle: "lead", present: state !== "leader-gone", age_s: state === "leader-gone" ? 48 : 0.4,
