@@ -34,8 +34,12 @@ fn a_swing_of_the_light_is_followed_and_reported() {
         let gain = 1.0 + 0.25 * (k as f32 / 8.0).sin();
         let outcome = follow.on_frame(&picture(&[moving(k)], gain, k), stamp(k), &mut NoProbe);
         let [(row, _)] = seen(&outcome)[..] else { panic!("frame {k}: {:?}", outcome.landmarks) };
-        let reported = row.adaptation.unwrap().gain;
+        let adaptation = row.adaptation.unwrap();
+        let reported = adaptation.gain;
         assert!((reported / gain - 1.0).abs() < 0.1, "frame {k}: {reported} for {gain}");
+        // Tolerances widen with the distance from the descriptor's light, and that is told too.
+        let departure = (reported - 1.0).abs();
+        assert_eq!(adaptation.tolerance_scale > 1.05, departure > 0.03, "frame {k}: {adaptation:?}");
     }
 }
 

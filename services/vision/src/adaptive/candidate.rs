@@ -237,7 +237,7 @@ fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Opti
     let score = choose::score(search, &object, form, area_px2, &observed);
     let cut = object.touches_border(search.frame.width(), search.frame.height());
     let gain = search.likeness.nearest(observed.mean).gain;
-    let tolerance_scale = search.likeness.tolerance_scale(search.landmark);
+    let tolerance_scale = search.likeness.tolerance_scale(search.landmark, gain);
     Some(Candidate {
         object,
         centroid,

@@ -90,10 +90,13 @@ impl Likeness {
         Self { face, ..self.clone() }
     }
 
-    /// The widest channel's tolerance over the descriptor's.
-    pub(crate) fn tolerance_scale(&self, landmark: &Landmark) -> f32 {
+    /// The widest channel's tolerance under a light of `gain` over the descriptor's.
+    pub(crate) fn tolerance_scale(&self, landmark: &Landmark, gain: f32) -> f32 {
         let given = landmark.tolerance.mean;
-        let scale = |cone: &Cone| (0..3).map(|c| cone.tolerance[c] / given[c].max(1.0)).fold(0.0, f32::max);
+        let scale = |cone: &Cone| {
+            let wider = cone.widening * (gain - 1.0).abs();
+            (0..3).map(|c| (cone.tolerance[c] + wider) / given[c].max(1.0)).fold(0.0, f32::max)
+        };
         self.cones.iter().map(scale).fold(0.0, f32::max)
     }
 
