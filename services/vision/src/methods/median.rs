@@ -48,6 +48,7 @@ fn middle(values: &mut [f32]) -> f32 {
 mod tests {
     use super::*;
     use crate::geometry::SizePx;
+    use crate::methods::reference::{any_border, any_plane};
     use proptest::prelude::*;
 
     #[test]
@@ -62,10 +63,23 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_middle_is_that_of_the_sorted_values(mut values in proptest::collection::vec(-9f32..9.0, 1..30)) {
-            let median = middle(&mut values.clone());
-            values.sort_by(f32::total_cmp);
-            prop_assert_eq!(median, (values[(values.len() - 1) / 2] + values[values.len() / 2]) / 2.0);
+        fn each_pixel_is_the_middle_of_its_window(
+            plane in any_plane(9), width in 1u16..6, height in 1u16..6, border in any_border(),
+        ) {
+            let sides = [width, height].map(|side| NonZeroU16::new(side).unwrap());
+            let slow = Plane::from_fn(plane.size(), |x, y| {
+                let level = |column: u16, row: u16| {
+                    let x = i64::from(x) + i64::from(column) - i64::from(width / 2);
+                    let y = i64::from(y) + i64::from(row) - i64::from(height / 2);
+                    let place = border.pixel(x, plane.width()).zip(border.pixel(y, plane.height()));
+                    place.map_or(0.0, |(x, y)| plane.get(x as u32, y as u32))
+                };
+                let places = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+                let mut levels: Vec<f32> = places.map(|(column, row)| level(column, row)).collect();
+                levels.sort_by(f32::total_cmp);
+                (levels[(levels.len() - 1) / 2] + levels[levels.len() / 2]) / 2.0
+            });
+            prop_assert_eq!(median(&plane, sides[0], sides[1], border), slow);
         }
     }
 }

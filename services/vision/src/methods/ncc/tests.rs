@@ -116,4 +116,24 @@ proptest! {
             }
         }
     }
+
+    #[test]
+    fn what_was_searched_before_leaves_no_trace(
+        seed in any::<u64>(), regions in proptest::collection::vec((0u32..30, 0u32..20, 8u32..60, 8u32..50), 1..6),
+    ) {
+        let frame = noise(60, 50, seed);
+        let options = NccOptions { scales: vec![0.8, 1.0, 1.5], ..NccOptions::default() };
+        let template = noise(7, 6, seed ^ 5);
+        let mut used = Ncc::new(&template, &options).unwrap();
+        for (x, y, width, height) in regions {
+            let region = Some(RectPx { x, y, width, height });
+            let fresh = Ncc::new(&template, &options).unwrap().search(&frame, region);
+            let again = used.search(&frame, region);
+            prop_assert_eq!(again.is_some(), fresh.is_some());
+            if let (Some(again), Some(fresh)) = (again, fresh) {
+                // Transforms of another size round differently, which may decide between equals.
+                prop_assert!((again.score - fresh.score).abs() < 1e-3, "{again:?} is not {fresh:?}");
+            }
+        }
+    }
 }
