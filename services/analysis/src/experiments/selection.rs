@@ -1,6 +1,6 @@
 //! Which experiments are asked for.
 
-use super::{ALL, Experiment};
+use super::{ALL, Experiment, Place};
 
 /// Something was asked for that is no experiment.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -28,10 +28,17 @@ pub fn selected(wanted: &[String]) -> Result<Vec<Experiment>, UnknownSelection> 
     Ok(ALL.iter().filter(is_wanted).copied().collect())
 }
 
+/// Figures that are shown with another one: theirs, and that one's.
+const SHOWN_WITH: [(&str, &str); 5] =
+    [("2.3", "2.4"), ("3.1", "3.2"), ("3.4", "3.5"), ("4.2", "4.3"), ("4.11", "4.12")];
+
 fn is_named(experiment: &Experiment, given: &str) -> bool {
+    let is_shown_here = SHOWN_WITH.iter().any(|(figure, with)| {
+        *figure == given && experiment.place == Place::Figure && experiment.number == *with
+    });
     let within =
         |whole: &str| whole == given || whole.strip_prefix(given).is_some_and(|rest| rest.starts_with('.'));
-    experiment.number.eq_ignore_ascii_case(given) || within(experiment.section)
+    is_shown_here || experiment.number.eq_ignore_ascii_case(given) || within(experiment.section)
 }
 
 #[cfg(test)]
@@ -47,6 +54,7 @@ mod tests {
     fn numbers_sections_and_chapters_name_experiments() {
         assert_eq!(numbers(&[]).len(), ALL.len());
         assert!(numbers(&["4.0.6"]).contains(&"4.8"));
+        assert!(numbers(&["3.4"]).contains(&"3.5") && numbers(&["4.11"]) == ["4.12"]);
         assert!(numbers(&["d.1"]).contains(&"D.1"));
         let of_chapters: usize = ["2", "3", "4"]
             .iter()

@@ -7,7 +7,7 @@ use crate::experiments::account::{Account, Thesis};
 use crate::experiments::picture::{arrows, grey};
 use crate::experiments::{ExperimentError, Lab};
 
-const SIZE: SizePx = SizePx { width: 64, height: 128 };
+const SIZE: SizePx = SizePx { width: 96, height: 96 };
 /// Distance of the stripes along a row and down a column, px.
 const STRIPES: (f32, f32) = (32.0, 24.0);
 /// How far the pole's surface moves to the right between two pictures, px.
@@ -17,7 +17,7 @@ const TURN_PX: f32 = 1.0;
 pub(in crate::experiments) fn run(_: &Lab) -> Result<Account, ExperimentError> {
     let (first, second) = (pole(0.0), pole(TURN_PX));
     let flow = HornSchunck::default().flow(&first, &second)?;
-    let middle = RectPx { x: 16, y: 32, width: 32, height: 64 };
+    let middle = RectPx { x: 24, y: 24, width: 48, height: 48 };
     let (u, v) = flow.mean_px(middle).unwrap_or_default();
     let seen_degrees = f64::from(-v).atan2(f64::from(u)).to_degrees();
     // Along the normal of the stripes, equation 2.27.

@@ -96,7 +96,10 @@ pub(in crate::experiments) fn moving_camera(lab: &Lab) -> Result<Account, Experi
          most {most:.2} px: flow alone does not single out a standing object.",
         100.0 * share
     );
-    account.picture(&arrows(&first, &flow, 24, 8.0)?, "Flow over frame 111, eight times as long as it is")?;
+    let shown = drive.region(number, "red", 8.0)?;
+    let part = Flow { u: flow.u.cropped(shown), v: flow.v.cropped(shown) };
+    let caption = "Flow around the red block in frame 111, four times as long as it is";
+    account.picture(&arrows(&first.cropped(shown), &part, 10, 4.0)?, caption)?;
     Ok(account)
 }
 

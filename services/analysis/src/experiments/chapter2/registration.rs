@@ -61,12 +61,25 @@ fn shift_error(plane: &Plane, dx: f32, dy: f32, account: &mut Account) -> Result
     let mut correlator = PhaseCorrelator::new(size, Taper::Hann)?;
     let found = correlator.shift(&first, &second)?;
     if dx.fract() == 0.0 {
+        let peak = around_zero(correlator.surface());
         account.picture(
-            &heat(correlator.surface())?,
-            "Phase correlation: one peak, at the shift (9, −5), counted around the edges",
+            &heat(&peak)?,
+            "Phase correlation: one peak at the shift (9, −5); no shift is the middle",
         )?;
     }
     Ok(f64::from((found.dx_px - dx).hypot(found.dy_px - dy)))
+}
+
+/// The shifts of up to so many pixels in every direction.
+const SHOWN_PX: u32 = 20;
+
+/// The middle of the surface, whose shifts count around its edges.
+fn around_zero(surface: &Plane) -> Plane {
+    let SizePx { width, height } = surface.size();
+    let side = 2 * SHOWN_PX + 1;
+    Plane::from_fn(SizePx { width: side, height: side }, |x, y| {
+        surface.get((x + width - SHOWN_PX) % width, (y + height - SHOWN_PX) % height)
+    })
 }
 
 /// The largest error of the map told by four pairs, and the picture that it makes.

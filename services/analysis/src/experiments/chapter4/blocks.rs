@@ -5,14 +5,17 @@ use vision::overlay::{Layers, draw};
 
 use crate::chart::{Chart, Mark, Series};
 use crate::experiments::account::{Account, Thesis};
-use crate::experiments::lab::{Followed, Manner, RINK_FRAMES, TEMPLATE_FRAME, score_claims};
+use crate::experiments::drive::SimulatedDrive;
+use crate::experiments::lab::{Followed, Manner, RINK_FRAMES, TEMPLATE_FRAME, score_claims, score_numbers};
 use crate::experiments::leftmost::Leftmost;
 use crate::experiments::{ExperimentError, Lab};
 use crate::score::{Claim, Score};
 use crate::thumbnail::part;
 
-/// Frames that are shown, a fifth apart.
-const SHOWN: [usize; 4] = [37, 110, 190, 270];
+/// Frames that are shown, evenly over those in which the block is visible.
+const SHOWN: usize = 4;
+/// A block is visible when so much of it can be seen.
+const LEAST_VISIBLE: f64 = 0.5;
 
 /// Tables 4.2 and 4.3: mean and variance of R, G, B.
 const RED: [(f64, f64); 3] = [(202.30, 85.08), (71.41, 40.07), (32.90, 58.00)];
@@ -103,10 +106,10 @@ fn block(lab: &Lab, id: &str) -> Result<Account, ExperimentError> {
         "frames 20 apart, adaptive: the later area is the larger one",
     );
     account.sentence = format!(
-        "Over {} frames the thesis says that the block was located in all. With its template and tolerances on the simulated \
-         rink the leftmost component is the block in {} of the frames, the likeliest one in {}; following light and scale, \
-         it is found in {}.",
-        RINK_FRAMES,
+        "The thesis says that the block was located in all of its {RINK_FRAMES} frames. The simulated cart passes the block \
+         earlier: it is visible in {} of them. There, with the thesis's template and tolerances, the leftmost component is \
+         the block in {}, the likeliest one in {}; following light and scale, it is found in {}.",
+        faithful.frames,
         percent(&printed),
         percent(&faithful),
         percent(&adaptive)
@@ -128,14 +131,22 @@ fn leftmost(lab: &Lab, id: &str) -> Result<Score, ExperimentError> {
     Ok(score_claims(drive, id, drive.numbers(), |number| claims[number - 1].into_iter().collect()))
 }
 
-/// Faithful detection in the first, middle and last third of the frames.
+/// The frames in which a block is visible.
+fn visible(drive: &SimulatedDrive, id: &str) -> Vec<usize> {
+    let is_visible =
+        |number: &usize| drive.object(*number, id).is_ok_and(|object| object.visible >= LEAST_VISIBLE);
+    drive.numbers().filter(is_visible).collect()
+}
+
+/// Faithful detection in the first, middle and last third of the frames in which the block is visible.
 fn by_thirds(lab: &Lab, id: &str) -> Result<[Option<f64>; 3], ExperimentError> {
     let (drive, followed) = (lab.drive(SceneKind::Rink)?, lab.followed(SceneKind::Rink, Manner::Faithful)?);
-    let third = drive.len().div_ceil(3);
-    Ok([0, 1, 2].map(|part| {
-        let numbers = part * third + 1..=((part + 1) * third).min(drive.len());
-        score_claims(drive, id, numbers, |number| followed.claims(number, id)).detection_rate
-    }))
+    let visible = visible(drive, id);
+    let mut thirds = visible.chunks(visible.len().div_ceil(3).max(1)).map(|third| {
+        let claimed = third.iter().map(|&number| (number, followed.claims(number, id)));
+        score_numbers(drive, id, claimed).detection_rate
+    });
+    Ok(std::array::from_fn(|_| thirds.next().flatten()))
 }
 
 /// The part of steps over twenty frames in which the measured area grows.
@@ -155,7 +166,9 @@ fn growth(lab: &Lab, id: &str) -> Result<Option<f64>, ExperimentError> {
 fn show(lab: &Lab, id: &str, account: &mut Account) -> Result<(), ExperimentError> {
     let drive = lab.drive(SceneKind::Rink)?;
     let adaptive = lab.followed(SceneKind::Rink, Manner::Adaptive)?;
-    for number in SHOWN {
+    let visible = visible(drive, id);
+    for number in (0..SHOWN).filter_map(|at| visible.get((2 * at + 1) * visible.len() / (2 * SHOWN)).copied())
+    {
         let mut frame = drive.frame(number)?;
         let mut outcome = adaptive.outcomes[number - 1].clone();
         outcome.landmarks.retain(|landmark| landmark.landmark == id);
