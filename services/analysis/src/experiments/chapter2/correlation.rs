@@ -33,7 +33,7 @@ pub(in crate::experiments) fn run(_: &Lab) -> Result<Account, ExperimentError> {
         "The surface has its maximum of {peak:.3} where the template was cut, {off:.0} px off; the next peak elsewhere reaches {second:.2}."
     );
     account.picture(&frame, "Input; the template is the letter H")?;
-    account.picture(&heat(&surface)?, "Coefficients: blue −1, red 1")?;
+    account.picture(&heat(&surface)?, "Coefficients: blue is the least, red the greatest")?;
     Ok(account)
 }
 

@@ -28,51 +28,39 @@ pub(in crate::experiments) fn run(_: &Lab) -> Result<Account, ExperimentError> {
         let low = low_pass(&input, side(5), side(5), Border::Nearest);
         let middle = median(&input, side(2), side(2), Border::Nearest);
         let wide = median(&input, side(3), side(3), Border::Nearest);
-        account.picture(&grey(&input, 0.0, 255.0)?, format!("Input with {name} noise"))?;
-        account.picture(&grey(&low, 0.0, 255.0)?, format!("Low-pass 5×5, {name} noise"))?;
-        account.picture(&grey(&middle, 0.0, 255.0)?, format!("Median 2×2, {name} noise"))?;
-        let filters = [
-            ("low-pass 5×5", &low, "noise reduced, edges blurred"),
-            ("median 2×2", &middle, "all of the noise removed"),
-            ("median 3×3", &wide, ""),
-        ];
-        for (filter, output, said) in filters {
-            let thesis = if said.is_empty() { Thesis::Silent } else { Thesis::Words(said) };
-            let left = flat_noise(&clean, output) / flat_noise(&clean, &input);
-            account.compare(
-                format!("{name} noise left by {filter}"),
-                thesis,
-                left,
-                "of its RMS",
-                "away from edges",
-            );
-            account.compare(
-                format!("edge slope after {filter}, {name} noise"),
-                Thesis::Silent,
-                slope(&clean, output),
-                "of the true one",
-                "mean Sobel magnitude on the letters' edges",
-            );
-            if filter == "median 2×2" {
-                let specks = specks(&clean, output);
-                account.compare(
-                    format!("{name} specks after {filter}"),
-                    Thesis::Number(0.0),
-                    specks,
-                    "of pixels",
-                    "more than 20 levels off, away from edges",
-                );
-                told.push(format!(
-                    "{:.0} % of the {name} noise's RMS and {:.1} % of the pixels more than 20 levels off",
-                    100.0 * left,
-                    100.0 * specks
-                ));
-            }
+        for (picture, what) in [(&input, "Input"), (&low, "Low-pass 5×5"), (&middle, "Median 2×2")] {
+            account.picture(&grey(picture, 0.0, 255.0)?, format!("{what}, {name} noise"))?;
         }
+        let before = flat_noise(&clean, &input);
+        let mut filtered = |filter: &str, output: &Plane, said: Thesis| {
+            let left = flat_noise(&clean, output) / before;
+            let note = "away from edges";
+            account.compare(format!("{name} noise left by {filter}"), said, left, "of its RMS", note);
+            let note = "mean Sobel magnitude on the letters' edges";
+            let quantity = format!("edge slope after {filter}, {name} noise");
+            account.compare(quantity, Thesis::Silent, slope(&clean, output), "of the true one", note);
+            left
+        };
+        filtered("low-pass 5×5", &low, Thesis::Words("noise reduced, edges blurred"));
+        let left = filtered("median 2×2", &middle, Thesis::Words("all of the noise removed"));
+        filtered("median 3×3", &wide, Thesis::Silent);
+        let specks = specks(&clean, &middle);
+        let note = "more than 20 levels off, away from edges";
+        account.compare(
+            format!("{name} specks after median 2×2"),
+            Thesis::Number(0.0),
+            specks,
+            "of pixels",
+            note,
+        );
+        let (left, specks) = (100.0 * left, 100.0 * specks);
+        told.push(format!(
+            "{left:.0} % of the {name} noise's RMS and {specks:.1} % of the pixels more than 20 levels off"
+        ));
     }
     account.sentence = format!(
-        "The thesis's 2×2 median, said to remove all of the noise, leaves {}. It keeps edges that the low-pass filter blurs; \
-         the kind of noise matters, which the thesis calls Gaussian in the figure and impulse noise in the text.",
+        "The thesis's 2×2 median, said to remove all of the noise, leaves {}. The kind of noise matters, which the thesis \
+         calls Gaussian in the figure and impulse noise in the text.",
         told.join(", and ")
     );
     Ok(account)

@@ -48,10 +48,8 @@ pub(in crate::experiments) fn blocks(_: &Lab) -> Result<Account, ExperimentError
         );
         told.push(format!("{off:.0}° ({name})"));
     }
-    account.sentence = format!(
-        "The mean flow over the blocks is off by {}: both directions are told rightly.",
-        told.join(" and ")
-    );
+    account.sentence =
+        format!("The mean flow over the blocks is off by {} in its direction.", told.join(" and "));
     account.picture(&grey(&first, 0.0, 255.0)?, "First picture, after Fig 2.9")?;
     account.picture(&grey(&second, 0.0, 255.0)?, "Second picture")?;
     account.picture(&arrows(&first, &flow, 6, 5.0)?, "Flow, five times as long as it is")?;
@@ -93,7 +91,7 @@ pub(in crate::experiments) fn moving_camera(lab: &Lab) -> Result<Account, Experi
     let most = apart.iter().copied().fold(0.0, f64::max);
     account.sentence = format!(
         "With the camera in motion {:.0} % of the pixels move, and a block's mean flow differs from its surroundings' by at \
-         most {most:.2} px: flow alone does not single out a standing object.",
+         most {most:.2} px.",
         100.0 * share
     );
     let shown = drive.region(number, "red", 8.0)?;

@@ -53,7 +53,7 @@ pub(in crate::experiments) fn run(_: &Lab) -> Result<Account, ExperimentError> {
     }
     account.sentence = format!(
         "{:.0} % of Sobel's gradient lies within a pixel of a true edge. Noise is answered with, as a part of the answer to a \
-         step of the same size: {}. Sobel's weight of 2 does not make it the smoothest; Prewitt's equal weights average more.",
+         step of the same size: {}. The thesis says that Sobel's weight of 2 makes it smoother.",
         100.0 * on_edges,
         told.join(", ")
     );

@@ -66,8 +66,8 @@ pub(in crate::experiments) fn lines(lab: &Lab) -> Result<Account, ExperimentErro
         format!("the {LINES} strongest lines"),
     );
     account.sentence = format!(
-        "{:.1} % of the length of the {LINES} strongest lines lies on a block: edges and Hough transform alone do not \
-         register objects, as the thesis says.",
+        "{:.1} % of the length of the {LINES} strongest lines lies on a block. Edges and Hough transform say where lines \
+         are, not whose.",
         100.0 * share
     );
     account.photograph(&lines.drawn_over(&frame)?, "The strongest lines, after Fig 3.6")?;
@@ -86,53 +86,39 @@ pub(in crate::experiments) fn correlation(lab: &Lab) -> Result<Account, Experime
         ("colour, 5 sizes", Colours::Rgb, vec![0.7, 0.85, 1.0, 1.3, 1.7]),
     ];
     for (name, colours, scales) in ways {
+        let one_size = scales.len() == 1;
         let mut ncc = Ncc::new(&template, &NccOptions { colours, scales })?;
-        let score = searched(drive, &mut ncc)?;
-        account.compare(
-            format!("detection over the run, {name}"),
-            Thesis::Words("has issues with the acquired data"),
-            score.detection_rate,
-            "of frames",
-            format!("the best window of every {STEP}th frame, template of frame 37"),
-        );
-        told.push(format!("{:.0} % ({name})", 100.0 * score.detection_rate.unwrap_or(0.0)));
-        if name != "colour, 5 sizes" {
-            let (on_block, elsewhere) = highest(drive, &mut ncc, &drive.frame(LATER_FRAME)?)?;
-            let note = "in frame 90, with the template of frame 37";
-            account.compare(
-                format!("highest on the block, {name}"),
-                Thesis::Words("medium (light blue)"),
-                on_block,
-                "",
-                note,
-            );
-            account.compare(
-                format!("highest elsewhere, {name}"),
-                Thesis::Words("strong along rink, pebbles and bricks"),
-                elsewhere,
-                "",
-                note,
-            );
-            let own = f64::from(ncc.surface(&lab.rink_frame()?, None).maximum().unwrap_or_default().2);
-            account.compare(
-                format!("coefficient at its own place, {name}"),
-                Thesis::Silent,
-                own,
-                "",
-                "1 by definition where the template was cut from the frame",
-            );
-            account.photograph(
-                &heat(ncc.surface(&drive.frame(LATER_FRAME)?, None))?,
-                format!("Coefficients in frame 90, {name}: blue −1, red 1"),
-            )?;
+        let found = searched(drive, &mut ncc)?.detection_rate;
+        let said = Thesis::Words("has issues with the acquired data");
+        let note = format!("the best window of every {STEP}th frame, template of frame 37");
+        account.compare(format!("detection over the run, {name}"), said, found, "of frames", note);
+        told.push(format!("{:.0} % ({name})", 100.0 * found.unwrap_or(0.0)));
+        if one_size {
+            surfaces(lab, &mut ncc, name, &mut account)?;
         }
     }
     account.sentence = format!(
-        "With the template of frame 37 the best window is the red block in {} of the frames: grey loses what colour tells, as \
-         the thesis says, and one size loses the block as it grows.",
+        "With the template of frame 37 the best window is the red block in {} of the frames that show it.",
         told.join(", ")
     );
     Ok(account)
+}
+
+/// What the coefficients are like in the template's own frame and in a later one.
+fn surfaces(lab: &Lab, ncc: &mut Ncc, name: &str, account: &mut Account) -> Result<(), ExperimentError> {
+    let drive = lab.drive(SceneKind::Rink)?;
+    let later = drive.frame(LATER_FRAME)?;
+    let (on_block, elsewhere) = highest(drive, ncc, &later)?;
+    let note = "in frame 90, with the template of frame 37";
+    let said = Thesis::Words("medium (light blue)");
+    account.compare(format!("highest on the block, {name}"), said, on_block, "", note);
+    let said = Thesis::Words("strong along rink, pebbles and bricks");
+    account.compare(format!("highest elsewhere, {name}"), said, elsewhere, "", note);
+    let own = f64::from(ncc.surface(&lab.rink_frame()?, None).maximum().unwrap_or_default().2);
+    let note = "1 by definition where the template was cut from the frame";
+    account.compare(format!("coefficient at its own place, {name}"), Thesis::Silent, own, "", note);
+    let caption = format!("Coefficients in frame 90, {name}: blue is the least, red the greatest");
+    account.photograph(&heat(ncc.surface(&later, None))?, caption)
 }
 
 /// The score of the best window of every so many-th frame.

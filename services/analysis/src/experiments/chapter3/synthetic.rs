@@ -70,8 +70,8 @@ pub(in crate::experiments) fn correlation(_: &Lab) -> Result<Account, Experiment
         "more than ten pixels away",
     );
     account.sentence = format!(
-        "Without noise the highest coefficient, {peak:.3}, lies on the block, {off:.0} px off, and {second:.2} is the highest elsewhere: the method works here, as the thesis says."
+        "Without noise the highest coefficient, {peak:.3}, lies {off:.0} px off the block, and {second:.2} is the highest elsewhere."
     );
-    account.picture(&heat(&surface)?, "Coefficients, after Fig 3.3: blue −1, red 1")?;
+    account.picture(&heat(&surface)?, "Coefficients, after Fig 3.3: blue is the least, red the greatest")?;
     Ok(account)
 }

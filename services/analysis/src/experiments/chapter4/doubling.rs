@@ -21,47 +21,33 @@ struct Fit {
 
 /// The experiment.
 pub(in crate::experiments) fn run(lab: &Lab) -> Result<Account, ExperimentError> {
-    let (drive, landmark) = (lab.drive(SceneKind::Rink)?, lab.template(SceneKind::Rink, "red")?);
-    let mut tool = Tool::default();
-    let mut fits = Vec::new();
-    for number in drive.numbers().step_by(STEP) {
-        let Ok(object) = drive.object(number, "red") else { continue };
-        let area_px2 = object.area_px2;
-        if let Some((doubled, single)) = tool.fits(&drive.frame(number)?, landmark) {
-            fits.push(Fit { area_px2, doubled, single });
-        }
-    }
-    fits.sort_by(|a, b| a.area_px2.total_cmp(&b.area_px2));
+    let fits = fits(lab)?;
     let mut account = Account::default();
     let (far, near) = fits.split_at(fits.len() / 2);
-    let mean =
-        |part: &[Fit], of: fn(&Fit) -> f64| part.iter().map(of).sum::<f64>() / part.len().max(1) as f64;
+    let mut told = Vec::new();
     for (name, part, said) in
         [("far", far, "enlarges the gradients"), ("near", near, "distorts the gradients a little")]
     {
+        let mean = |of: fn(&Fit) -> f64| part.iter().map(of).sum::<f64>() / part.len().max(1) as f64;
+        let (doubled, single) = (mean(|fit| fit.doubled), mean(|fit| fit.single));
+        let note = "mean over the frames of the half";
         account.compare(
             format!("fit to a block, {name}, doubled"),
             Thesis::Words(said),
-            mean(part, |fit| fit.doubled),
+            doubled,
             "0..1",
-            "mean over the frames of the half",
+            note,
         );
-        account.compare(
-            format!("fit to a block, {name}, not doubled"),
-            Thesis::Silent,
-            mean(part, |fit| fit.single),
-            "0..1",
-            "the same windows on every second place",
-        );
+        let note = "the same windows on every second place";
+        account.compare(format!("fit to a block, {name}, not doubled"), Thesis::Silent, single, "0..1", note);
+        told.push(format!(
+            "{doubled:.2} on the doubled grid and {single:.2} on the original one in the {name} half"
+        ));
     }
     account.sentence = format!(
-        "The outline of the mask on the doubled grid fits a block with {:.2} in the far half of the run and {:.2} in the near \
-         one; on the original grid with {:.2} and {:.2}. Doubling by nearest neighbours adds no information, but windows \
-         at half pixels do.",
-        mean(far, |fit| fit.doubled),
-        mean(near, |fit| fit.doubled),
-        mean(far, |fit| fit.single),
-        mean(near, |fit| fit.single),
+        "The outline of the red block's mask fits a block with {} of the run. Doubling by nearest neighbours adds no \
+         information, but lets windows begin at half pixels.",
+        told.join(", with ")
     );
     let points = |of: fn(&Fit) -> f64| fits.iter().map(|fit| (fit.area_px2, of(fit))).collect();
     account.chart(&Chart {
@@ -74,6 +60,20 @@ pub(in crate::experiments) fn run(lab: &Lab) -> Result<Account, ExperimentError>
         ],
     })?;
     Ok(account)
+}
+
+/// The fits in the sampled frames in which the mask has anything, the smallest block first.
+fn fits(lab: &Lab) -> Result<Vec<Fit>, ExperimentError> {
+    let (drive, landmark) = (lab.drive(SceneKind::Rink)?, lab.template(SceneKind::Rink, "red")?);
+    let (mut tool, mut fits) = (Tool::default(), Vec::new());
+    for number in drive.numbers().step_by(STEP) {
+        let Ok(object) = drive.object(number, "red") else { continue };
+        if let Some((doubled, single)) = tool.fits(&drive.frame(number)?, landmark) {
+            fits.push(Fit { area_px2: object.area_px2, doubled, single });
+        }
+    }
+    fits.sort_by(|a, b| a.area_px2.total_cmp(&b.area_px2));
+    Ok(fits)
 }
 
 #[derive(Default)]

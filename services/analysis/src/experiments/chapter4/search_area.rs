@@ -65,7 +65,7 @@ pub(in crate::experiments) fn run(lab: &Lab) -> Result<Account, ExperimentError>
         ));
     }
     account.sentence = format!(
-        "Searched near its prediction only, {}. The text says that knowing the place would increase the time; it lowers it.",
+        "Searched near its prediction only, {}. The text has knowledge of the place increase the processing time.",
         told.join("; ")
     );
     Ok(account)

@@ -8,7 +8,7 @@ use crate::experiments::account::{Account, Thesis};
 use crate::experiments::lab::{Manner, STOP_FRAMES};
 use crate::experiments::leftmost::Leftmost;
 use crate::experiments::{ExperimentError, Lab};
-use crate::score::quantile;
+use crate::score::{Score, quantile};
 
 /// Frame 11 is the thesis's far one.
 const SHOWN: [usize; 4] = [11, 28, 42, 52];
@@ -17,59 +17,20 @@ const OCTAGON_FIT: f64 = 0.5;
 
 /// The experiment.
 pub(in crate::experiments) fn run(lab: &Lab) -> Result<Account, ExperimentError> {
-    let faithful = lab.score(SceneKind::StopSign, Manner::Faithful, "sign")?;
-    let adaptive = lab.score(SceneKind::StopSign, Manner::Adaptive, "sign")?;
     let mut account = Account::default();
-    for (way, score) in [("faithful", &faithful), ("adaptive", &adaptive)] {
-        account.compare(
-            format!("detection, {way}"),
-            Thesis::Words("shown in four frames"),
-            score.detection_rate,
-            "of frames",
-            "",
-        );
-        account.compare(format!("false, {way}"), Thesis::Silent, score.false_rate, "of frames", "");
-        account.compare(
-            format!("centre error, {way}"),
-            Thesis::Silent,
-            score.centre_median_px,
-            "px",
-            "median of right frames",
-        );
-    }
+    let faithful = detection(lab, Manner::Faithful, "faithful", &mut account)?;
+    let adaptive = detection(lab, Manner::Adaptive, "adaptive", &mut account)?;
     let pieces = pieces(lab)?;
     let split = pieces.iter().filter(|&&count| count >= 2.0).count() as f64 / pieces.len().max(1) as f64;
+    let note = "pieces of the colour mask in the frame; lettering and clutter make them";
     account.compare(
         "frames in several pieces",
         Thesis::Words("two sections or just blocks of red"),
         split,
         "of frames",
-        "pieces of the colour mask in the frame; lettering and clutter make them",
+        note,
     );
-    let fits = fits(lab)?;
-    let (far, near) = halves(&fits);
-    account.compare(
-        "octagon, far half",
-        Thesis::Words("no octagon: a red blur"),
-        far,
-        "fit, 0..1",
-        "median fit of the outline, adaptive; 0 where it is too small to tell",
-    );
-    account.compare(
-        "octagon, near half",
-        Thesis::Words("recognizable"),
-        near,
-        "fit, 0..1",
-        "the same in the nearer half of the frames",
-    );
-    let from = fits.iter().find(|(_, _, fit)| *fit >= OCTAGON_FIT).map(|(_, area, _)| *area);
-    account.compare(
-        "area at the first octagon",
-        Thesis::Silent,
-        from,
-        "px²",
-        "true area of the sign when its outline first fits",
-    );
+    let from = octagon(lab, &mut account)?;
     account.sentence = format!(
         "Over {STOP_FRAMES} frames the sign is registered in {} with the thesis's fixed shades and tolerances, in {} when \
          light and scale are followed. {}",
@@ -77,21 +38,44 @@ pub(in crate::experiments) fn run(lab: &Lab) -> Result<Account, ExperimentError>
         rate(adaptive.detection_rate),
         from.map_or_else(
             || "Its outline never fits an octagon.".to_owned(),
-            |area| format!("Far away it is a blur; from {area:.0} px² on its outline fits an octagon."),
+            |area| format!("Its outline first fits an octagon when its area is {area:.0} px²."),
         )
     );
     show(lab, &mut account)?;
+    Ok(account)
+}
+
+/// How well the sign is registered.
+fn detection(lab: &Lab, manner: Manner, way: &str, account: &mut Account) -> Result<Score, ExperimentError> {
+    let score = lab.score(SceneKind::StopSign, manner, "sign")?;
+    let said = Thesis::Words("shown in four frames");
+    account.compare(format!("detection, {way}"), said, score.detection_rate, "of frames", "");
+    account.compare(format!("false, {way}"), Thesis::Silent, score.false_rate, "of frames", "");
+    let note = "median of right frames";
+    account.compare(format!("centre error, {way}"), Thesis::Silent, score.centre_median_px, "px", note);
+    Ok(score)
+}
+
+/// How well the outline fits an octagon, far and near; the sign's area when it first does.
+fn octagon(lab: &Lab, account: &mut Account) -> Result<Option<f64>, ExperimentError> {
+    let fits = fits(lab)?;
+    let (far, near) = halves(&fits);
+    let blur = Thesis::Words("no octagon: a red blur");
+    let note = "median fit of the outline, adaptive; 0 where it is too small to tell";
+    account.compare("octagon, far half", blur, far, "fit, 0..1", note);
+    let note = "the same in the nearer half of the frames";
+    account.compare("octagon, near half", Thesis::Words("recognizable"), near, "fit, 0..1", note);
+    let from = fits.iter().find(|(_, _, fit)| *fit >= OCTAGON_FIT).map(|(_, area, _)| *area);
+    let note = "true area of the sign when its outline first fits";
+    account.compare("area at the first octagon", Thesis::Silent, from, "px²", note);
+    let points = fits.iter().map(|&(_, area, fit)| (area, fit)).collect();
     account.chart(&Chart {
         title: "Fit of the outline to an octagon".to_owned(),
         x: Axis::new("true area, px²", Extent::DataFromZero),
         y: Axis::new("fit", Extent::Fixed(0.0, 1.0)),
-        series: vec![Series::new(
-            "adaptive",
-            Mark::Dots,
-            fits.iter().map(|&(_, area, fit)| (area, fit)).collect(),
-        )],
+        series: vec![Series::new("adaptive", Mark::Dots, points)],
     })?;
-    Ok(account)
+    Ok(from)
 }
 
 fn rate(rate: Option<f64>) -> String {
