@@ -16,7 +16,8 @@ fn main() {
     fs::write(out.join("uplot.css"), style).expect("OUT_DIR can be written to");
 }
 
-/// uPlot as a module, and its style sheet: of the version that web/package-lock.json names, by its digest.
+/// uPlot as a module under its licence, and its style sheet: of the version that web/package-lock.json names, by its
+/// digest.
 fn fetched(out: &Path) -> io::Result<(String, String)> {
     let place = out.join("npm");
     fs::create_dir_all(&place)?;
@@ -36,8 +37,10 @@ fn fetched(out: &Path) -> io::Result<(String, String)> {
     if !npm.status()?.success() {
         return Err(io::ErrorKind::NotFound.into());
     }
-    let dist = place.join("node_modules/uplot/dist");
+    let package = place.join("node_modules/uplot");
+    let dist = package.join("dist");
+    let licence = fs::read_to_string(package.join("LICENSE"))?;
     let script = fs::read_to_string(dist.join("uPlot.iife.min.js"))?;
     let style = fs::read_to_string(dist.join("uPlot.min.css"))?;
-    Ok((format!("{script}\nexport default uPlot;\n"), style))
+    Ok((format!("/*!\n{licence}*/\n{script}\nexport default uPlot;\n"), style))
 }
