@@ -22,13 +22,32 @@ const TOLERANCE: u8 = 4;
 
 const SIZE: (u32, u32) = (320, 240);
 
-/// Colour, class of shape, centre and half a width of what stands on the floor.
-const OBJECTS: [(&str, [u8; 3], ShapeClass, (f64, f64), f64); 5] = [
-    ("red", [202, 71, 33], ShapeClass::Block, (60.0, 60.0), 22.0),
-    ("blue", [51, 60, 130], ShapeClass::Circle, (160.0, 64.0), 26.0),
-    ("green", [40, 140, 60], ShapeClass::Triangle, (262.0, 70.0), 34.0),
-    ("orange", [225, 130, 30], ShapeClass::Octagon, (84.0, 170.0), 30.0),
-    ("yellow", [220, 205, 50], ShapeClass::Rectangle, (220.0, 170.0), 28.0),
+/// What stands on the floor.
+struct Object {
+    id: &'static str,
+    colour: [u8; 3],
+    shape: ShapeClass,
+    centre: (f64, f64),
+    /// Half a width, px; what that means depends on the shape.
+    half: f64,
+}
+
+const fn object(
+    id: &'static str,
+    colour: [u8; 3],
+    shape: ShapeClass,
+    centre: (f64, f64),
+    half: f64,
+) -> Object {
+    Object { id, colour, shape, centre, half }
+}
+
+const OBJECTS: [Object; 5] = [
+    object("red", [202, 71, 33], ShapeClass::Block, (60.0, 60.0), 22.0),
+    object("blue", [51, 60, 130], ShapeClass::Circle, (160.0, 64.0), 26.0),
+    object("green", [40, 140, 60], ShapeClass::Triangle, (262.0, 70.0), 34.0),
+    object("orange", [225, 130, 30], ShapeClass::Octagon, (84.0, 170.0), 30.0),
+    object("yellow", [220, 205, 50], ShapeClass::Rectangle, (220.0, 170.0), 28.0),
 ];
 
 /// Whether a place, told from an object's centre, is part of it.
@@ -45,10 +64,9 @@ fn inside(shape: ShapeClass, x: f64, y: f64, half: f64) -> bool {
 fn frame() -> Frame {
     let pixel = |x: u32, y: u32| {
         let (px, py) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-        let under = |(_, _, shape, (cx, cy), half): &&(_, _, ShapeClass, (f64, f64), f64)| {
-            inside(*shape, px - cx, py - cy, *half)
-        };
-        let colour = OBJECTS.iter().find(under).map_or([150, 158, 165], |object| object.1);
+        let under =
+            |object: &&Object| inside(object.shape, px - object.centre.0, py - object.centre.1, object.half);
+        let colour = OBJECTS.iter().find(under).map_or([150, 158, 165], |object| object.colour);
         let noise = ((x * 7 + y * 13) ^ (x * y)) % 4;
         colour.map(|level| level + noise as u8)
     };
@@ -57,13 +75,16 @@ fn frame() -> Frame {
 }
 
 fn landmarks() -> LandmarkSet {
-    let landmark = |(id, colour, shape, _, _): &(&str, [u8; 3], ShapeClass, (f64, f64), f64)| Landmark {
-        id: (*id).to_owned(),
+    let landmark = |object: &Object| Landmark {
+        id: object.id.to_owned(),
         revision: 1,
         window_px: WindowPx::square(12),
-        shades: vec![ColorStats { mean: colour.map(|level| f32::from(level) + 1.5), variance: [2.0; 3] }],
+        shades: vec![ColorStats {
+            mean: object.colour.map(|level| f32::from(level) + 1.5),
+            variance: [2.0; 3],
+        }],
         tolerance: ColorStats::uniform(15.0, 50.0),
-        shape: *shape,
+        shape: object.shape,
         size_m: None,
         digest: Digest::default(),
     };
