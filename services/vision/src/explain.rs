@@ -46,6 +46,8 @@ pub struct Explanation {
     pub shape_score: Option<f32>,
     /// The whole outcome: registered, or the reason why not.
     pub outcome: LandmarkOutcome,
+    /// Further objects that were registered, with a lower score than the one explained, best first.
+    pub others: Vec<LandmarkOutcome>,
 }
 
 impl Explanation {
@@ -101,21 +103,24 @@ impl Statistic {
 /// A miss is looked into window by window, which takes some 50 ms for a frame of 640×480.
 #[must_use]
 pub fn explain(frame: &Frame, landmark: &Landmark, mode: Mode) -> Explanation {
-    let outcome = first_outcome(frame, landmark, mode);
-    match &outcome.result {
+    let mut outcomes = first_outcomes(frame, landmark, mode).into_iter();
+    let outcome = outcomes.next().unwrap_or_else(|| report::missed(landmark, 0, Miss::Skipped));
+    let explanation = match &outcome.result {
         Ok(sighting) => of_sighting(landmark, sighting.clone(), outcome),
         Err(_) => of_miss(frame, landmark, outcome),
-    }
+    };
+    Explanation { others: outcomes.filter(|other| other.result.is_ok()).collect(), ..explanation }
 }
 
-fn first_outcome(frame: &Frame, landmark: &Landmark, mode: Mode) -> LandmarkOutcome {
+/// What is said of a first frame, the best score first.
+fn first_outcomes(frame: &Frame, landmark: &Landmark, mode: Mode) -> Vec<LandmarkOutcome> {
     let landmarks = vec![Arc::new(landmark.clone())];
     let set = LandmarkSet { version: SetVersion::default(), landmarks };
     let mut follow = Follow::new(FollowOptions { mode, ..FollowOptions::default() }, set);
-    let outcome = follow.on_frame(frame, FrameStamp::default(), &mut NoProbe);
+    let mut outcomes = follow.on_frame(frame, FrameStamp::default(), &mut NoProbe).landmarks;
     let score = |row: &LandmarkOutcome| row.result.as_ref().map_or(-1.0, |sighting| sighting.score);
-    let best = outcome.landmarks.into_iter().max_by(|a, b| score(a).total_cmp(&score(b)));
-    best.unwrap_or_else(|| report::missed(landmark, 0, Miss::Skipped))
+    outcomes.sort_by(|a, b| score(b).total_cmp(&score(a)));
+    outcomes
 }
 
 fn of_sighting(landmark: &Landmark, sighting: Sighting, outcome: LandmarkOutcome) -> Explanation {
@@ -128,6 +133,7 @@ fn of_sighting(landmark: &Landmark, sighting: Sighting, outcome: LandmarkOutcome
         segments: sighting.segments,
         shape_score: sighting.shape_score,
         outcome,
+        others: Vec::new(),
     }
 }
 
@@ -147,6 +153,7 @@ fn of_miss(frame: &Frame, landmark: &Landmark, mut outcome: LandmarkOutcome) -> 
         segments,
         shape_score: None,
         outcome,
+        others: Vec::new(),
     }
 }
 
@@ -217,6 +224,8 @@ mod tests {
             assert_eq!(explanation.shade, 1);
             assert_eq!(explanation.statistics.len(), 6);
             assert!(explanation.failures().is_empty(), "{:?}", explanation.failures());
+            assert!(explanation.others.is_empty());
+            assert_eq!(explanation.outcome.adaptation.is_some(), mode == Mode::Adaptive);
         }
     }
 

@@ -7,7 +7,7 @@ use analysis::learn::read_frame;
 use anyhow::Context;
 use vision::explain::{Comparison, Explanation, explain};
 use vision::frame::encode::{Quality, encode_jpeg, encode_png};
-use vision::outcome::Statistic;
+use vision::outcome::{Adaptation, Statistic};
 use vision::overlay::{Layers, draw};
 use vision::{Frame, Landmark, Outcome, Prediction};
 
@@ -65,10 +65,52 @@ fn described(landmark: &Landmark, explanation: &Explanation) -> String {
         at.x, at.y
     ));
     text.push_str(statistics(&explanation.statistics).trim_end());
+    if let Some(adaptation) = &explanation.outcome.adaptation {
+        text.push_str("\n\nAdapted to this picture:\n");
+        text.push_str(adapted(adaptation).trim_end());
+    }
+    if !explanation.others.is_empty() {
+        text.push_str("\n\nObjects registered, by score; the first one is explained:\n");
+        text.push_str(candidates(explanation).trim_end());
+    }
     if explanation.outcome.result.is_ok() && !explanation.failures().is_empty() {
         text.push_str("\n\nRegistered all the same: adaptive mode follows light, noise and scale.");
     }
     text
+}
+
+fn adapted(adaptation: &Adaptation) -> String {
+    let Adaptation { gain, noise_variance: [red, green, blue], window_px, tolerance_scale, full_frame } =
+        *adaptation;
+    let mut table = Columns::new(["what", "value", "meaning"]);
+    let searched = if full_frame { "whole frame" } else { "gate" };
+    for row in [
+        ["gain", &format!("{gain:.2}"), "brightness over the descriptor's"],
+        ["noise", &format!("{red:.1} {green:.1} {blue:.1}"), "variance of the camera, levels², taken out"],
+        ["window", &format!("{window_px}"), "samples on a side, of the doubled grid"],
+        ["tolerance", &format!("{tolerance_scale:.2}"), "times the descriptor's for means"],
+        ["searched", searched, "nothing is known from earlier frames"],
+    ] {
+        table.row(row.map(str::to_owned));
+    }
+    table.text()
+}
+
+fn candidates(explanation: &Explanation) -> String {
+    let mut table = Columns::new(["object", "x", "y", "px²", "shape fit", "distinctness", "score"]);
+    for outcome in std::iter::once(&explanation.outcome).chain(&explanation.others) {
+        let Ok(seen) = &outcome.result else { continue };
+        table.row([
+            outcome.instance.to_string(),
+            format!("{:.1}", seen.centroid.x),
+            format!("{:.1}", seen.centroid.y),
+            format!("{:.0}", seen.area_px2),
+            seen.shape_score.map_or("too small".to_owned(), |fit| format!("{fit:.2}")),
+            format!("{:.2}", seen.distinctness),
+            format!("{:.2}", seen.score),
+        ]);
+    }
+    table.text()
 }
 
 fn verdict(landmark: &Landmark, explanation: &Explanation) -> String {
@@ -110,7 +152,8 @@ fn draw_into(frame: &mut Frame, explanation: &Explanation, landmark: &Landmark) 
         let window_px2 = f32::from(landmark.window_px.width) * f32::from(landmark.window_px.height) / 4.0;
         outcome.prediction = Some(Prediction { centroid: at, area_px2: window_px2, ..Prediction::default() });
     }
-    let all = Outcome { frame_size: frame.size(), landmarks: vec![outcome], ..Outcome::default() };
+    let landmarks = std::iter::once(outcome).chain(explanation.others.iter().cloned()).collect();
+    let all = Outcome { frame_size: frame.size(), landmarks, ..Outcome::default() };
     draw(frame, &all, Layers::ALL);
 }
 
