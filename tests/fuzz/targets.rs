@@ -11,7 +11,7 @@ use waymark_proto::json::{landmark_from_json, landmark_to_json, set_from_json};
 use waymark_proto::v1;
 
 /// JPEG or PNG.
-pub fn picture(bytes: &[u8]) {
+pub(crate) fn picture(bytes: &[u8]) {
     let limits = DecodeLimits { max_side_px: 512, max_pixels: 1 << 16 };
     if let Ok(frame) = decode(bytes, &limits) {
         assert_eq!(frame.rgb().len(), 3 * frame.width() as usize * frame.height() as usize);
@@ -20,7 +20,7 @@ pub fn picture(bytes: &[u8]) {
 }
 
 /// A landmark file, and a file of a set.
-pub fn landmark_json(bytes: &[u8]) {
+pub(crate) fn landmark_json(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let _any = set_from_json(text);
     if let Ok(landmark) = landmark_from_json(text) {
@@ -31,7 +31,7 @@ pub fn landmark_json(bytes: &[u8]) {
 }
 
 /// A landmark and a set as they come from the network.
-pub fn landmark_protobuf(bytes: &[u8]) {
+pub(crate) fn landmark_protobuf(bytes: &[u8]) {
     if let Ok(wire) = v1::LandmarkSet::decode(bytes) {
         let _any = set_from_wire(&wire);
     }
@@ -44,7 +44,7 @@ pub fn landmark_protobuf(bytes: &[u8]) {
 }
 
 /// A recording, whole, cut or damaged.
-pub fn recording(bytes: &[u8]) {
+pub(crate) fn recording(bytes: &[u8]) {
     let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
     std::io::Write::write_all(&mut file, bytes).expect("it can be written");
     for strictness in [Strictness::Strict, Strictness::Lenient] {
