@@ -15,7 +15,6 @@ mod scene;
 use std::error::Error;
 use std::hint::black_box;
 use std::num::NonZeroU16;
-use std::path::Path;
 use std::rc::Rc;
 
 use clock::Rounds;
@@ -33,13 +32,8 @@ use vision::{Frame, RectPx, SizePx};
 const TEMPLATE_AT: (u32, u32) = (300, 200);
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
-    let (options, filters): (Vec<_>, Vec<_>) = arguments.chunks(2).partition(|pair| pair[0] == "--frames");
-    if let Some([_, directory]) = options.first() {
-        write_frames(Path::new(directory))?;
-    }
-    let wanted =
-        |line: &str| filters.iter().flat_map(|pair| pair.iter()).all(|part| line.contains(part.as_str()));
+    let filters = scene::arguments()?;
+    let wanted = |line: &str| filters.iter().all(|part| line.contains(part.as_str()));
     let mut subjects = Subjects { rounds: Rounds::default(), wanted: &wanted };
     for size in scene::SIZES {
         let frame = Rc::new(scene::rink(size));
@@ -54,16 +48,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     for (line, smallest_us) in subjects.rounds.measure() {
         println!("{line}\t{smallest_us:.2}");
-    }
-    Ok(())
-}
-
-#[allow(clippy::disallowed_methods, reason = "frames for the other program")]
-fn write_frames(directory: &Path) -> Result<(), Box<dyn Error>> {
-    std::fs::create_dir_all(directory)?;
-    for size in scene::SIZES {
-        let SizePx { width, height } = size;
-        std::fs::write(directory.join(format!("rink-{width}x{height}.rgb")), scene::rink(size).rgb())?;
     }
     Ok(())
 }

@@ -16,33 +16,16 @@ mod stages;
 mod subjects;
 
 use std::error::Error;
-use std::path::Path;
 
 use clock::Rounds;
-use vision::SizePx;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
-    let (options, filters): (Vec<_>, Vec<_>) = arguments.chunks(2).partition(|pair| pair[0] == "--frames");
-    if let Some([_, directory]) = options.first() {
-        write_frames(Path::new(directory))?;
-    }
-    let wanted =
-        |line: &str| filters.iter().flat_map(|pair| pair.iter()).all(|part| line.contains(part.as_str()));
+    let filters = scene::arguments()?;
+    let wanted = |line: &str| filters.iter().all(|part| line.contains(part.as_str()));
     let mut rounds = Rounds::default();
     subjects::add_all(&mut rounds, &wanted);
     for (line, smallest_us) in rounds.measure() {
         println!("{line}\t{smallest_us:.2}");
-    }
-    Ok(())
-}
-
-#[allow(clippy::disallowed_methods, reason = "frames for the other program")]
-fn write_frames(directory: &Path) -> Result<(), Box<dyn Error>> {
-    std::fs::create_dir_all(directory)?;
-    for size in scene::SIZES {
-        let SizePx { width, height } = size;
-        std::fs::write(directory.join(format!("rink-{width}x{height}.rgb")), scene::rink(size).rgb())?;
     }
     Ok(())
 }

@@ -1,5 +1,8 @@
 //! Frames like those of the thesis's rink, the same ones in every run.
 
+use std::error::Error;
+use std::path::Path;
+
 use vision::{ColorStats, Digest, Frame, Landmark, RectPx, ShapeClass, SizePx, WindowPx};
 
 /// Frame sizes that cameras deliver.
@@ -129,4 +132,24 @@ impl Noise {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (0..3).map(|draw| (self.0 >> (40 + 8 * draw)) as i32 % 9 - 4).sum()
     }
+}
+
+/// The arguments that select figures. With `--frames DIRECTORY` the frames are written there as well.
+pub(crate) fn arguments() -> Result<Vec<String>, Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let (options, filters): (Vec<_>, Vec<_>) = arguments.chunks(2).partition(|pair| pair[0] == "--frames");
+    if let Some([_, directory]) = options.first() {
+        write_frames(Path::new(directory))?;
+    }
+    Ok(filters.concat())
+}
+
+#[allow(clippy::disallowed_methods, reason = "frames for the other program")]
+fn write_frames(directory: &Path) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all(directory)?;
+    for size in SIZES {
+        let SizePx { width, height } = size;
+        std::fs::write(directory.join(format!("rink-{width}x{height}.rgb")), rink(size).rgb())?;
+    }
+    Ok(())
 }
