@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use http_face::STALE_AFTER;
+use http_face::{STALE_AFTER, camera_state};
 use ingest::camera_thread::{CameraCounters, Registered};
 use ingest::encoded::EncodedFrame;
 use ingest::mailbox::Mailbox;
@@ -104,11 +104,7 @@ impl Station {
         let age = newest.as_ref().map(|newest| newest.finished_at.elapsed());
         CameraStatus {
             id: self.id.clone(),
-            state: match age {
-                None => "waiting",
-                Some(age) if age > STALE_AFTER => "stale",
-                Some(_) => "live",
-            },
+            state: camera_state(age),
             sequence: newest.as_ref().map(|newest| newest.outcome.sequence),
             age_ms: age.map(milliseconds),
             fps: self.rate.lock().unwrap_or_else(PoisonError::into_inner).rate_hz(Instant::now()),

@@ -60,7 +60,7 @@ pub use json_body::json_body;
 pub use metrics_text::metrics_text;
 pub use page::page;
 pub use parameters::Parameters;
-pub use pictures::{Picture, PictureFeed, STALE_AFTER};
+pub use pictures::{Picture, PictureFeed, STALE_AFTER, camera_state};
 pub use policy::{Access, Policy, Token, TokenError};
 pub use problem::{PROBLEM_JSON, Problem};
 pub use renditions::{Format, PictureRequest, Render};

@@ -9,6 +9,16 @@ use tokio::time::Instant;
 /// A picture older than this is not shown as live.
 pub const STALE_AFTER: Duration = Duration::from_secs(2);
 
+/// How a camera is whose newest picture has this age: `waiting` for its first, `stale` or `live`.
+#[must_use]
+pub fn camera_state(age: Option<Duration>) -> &'static str {
+    match age {
+        None => "waiting",
+        Some(age) if age > STALE_AFTER => "stale",
+        Some(_) => "live",
+    }
+}
+
 /// One picture and what belongs to it; `T` is whatever the owner draws from.
 #[derive(Debug)]
 pub struct Picture<T> {

@@ -10,7 +10,7 @@ use axum::response::Response;
 use axum::routing::get;
 use axum::{Extension, Json, Router};
 use http_face::{
-    Api, Cameras, Check, Counters, Health, Operation, Picture, PictureFeed, STALE_AFTER, health,
+    Api, Cameras, Check, Counters, Health, Operation, Picture, PictureFeed, camera_state, health,
     metrics_text, page,
 };
 use ingest::encoded::EncodedFrame;
@@ -90,11 +90,7 @@ impl Face {
         let age = newest.as_ref().map(Picture::age);
         CameraStatus {
             id: id.to_owned(),
-            state: match age {
-                None => "waiting",
-                Some(age) if age > STALE_AFTER => "stale",
-                Some(_) => "live",
-            },
+            state: camera_state(age),
             sequence: newest.map(|newest| newest.sequence),
             age_ms: age.map(|age| age.as_secs_f64() * 1e3),
         }
