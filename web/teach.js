@@ -15,12 +15,17 @@ const LEAST_SIDE_PX = 4;
 const canvas = /** @type {HTMLCanvasElement} */ (byId("picture"));
 const marks = /** @type {HTMLCanvasElement} */ (byId("marks"));
 const form = /** @type {HTMLFormElement} */ (byId("teach-form"));
+const fields = /** @type {HTMLFieldSetElement} */ (byId("teach-box"));
 
 /** Where a drag began, frame pixels. @type {[number, number] | null} */
 let corner = null;
 
 /** What was learned last. @type {any} */
 let learned = null;
+
+/** The picture that is on its way, counted from 1, or 0: a box given before it comes would be lost. */
+let awaited = 0;
+let taken = 0;
 
 /** Counts questions, so that an answer to an earlier one is not shown. */
 let asked = 0;
@@ -51,10 +56,19 @@ function field(name) {
 
 /** Keeps the newest picture on the service and shows it instead of the live one. */
 async function take() {
+  taken += 1;
+  const mine = taken;
+  awaited = mine;
+  showTeaching();
   const answer = await ask(byId("teach-answer"), `/api/v1/lessons?camera=${encodeURIComponent(known.camera ?? "")}`);
-  if (!answer) return false;
+  if (awaited === mine) awaited = 0;
+  if (!answer) {
+    showTeaching();
+    return false;
+  }
   setLesson({ number: answer.lesson, widthPx: answer.width_px, heightPx: answer.height_px, box: null, showsMask: false, query: "" });
   forget();
+  showTeaching();
   restartLive();
   return true;
 }
@@ -62,6 +76,7 @@ async function take() {
 function leave() {
   setLesson(null);
   forget();
+  showTeaching();
   restartLive();
 }
 
@@ -211,6 +226,7 @@ export function showTeaching() {
   if (byId("teach").hidden) return;
   const current = lesson();
   const allowed = known.access !== "read_only";
+  fields.disabled = awaited > 0 || !current;
   /** @type {HTMLButtonElement} */ (byId("teach-take")).disabled = !allowed;
   /** @type {HTMLButtonElement} */ (byId("teach-leave")).disabled = !current;
   /** @type {HTMLInputElement} */ (byId("teach-mask")).disabled = !current || !learned;

@@ -69,7 +69,16 @@ test("a box on the live picture becomes a landmark that followers look for, unti
 
 test("the box can be given in figures, and what is no box is told", async () => {
   const { page, close } = await openWatched(browser, demo.leaderUrl);
+  /** @type {() => void} */
+  let release = () => {};
+  const held = new Promise((next) => { release = () => next(undefined); });
+  await page.route("**/api/v1/lessons?*", async (route) => {
+    await held;
+    await route.continue();
+  });
   await page.getByRole("button", { name: "Take this picture" }).click();
+  assert.ok(await page.getByLabel("Left px").isDisabled(), "a box is asked for before there is a picture");
+  release();
   await page.locator("#frame-facts").getByText(/taken to learn from/).waitFor();
   for (const [label, value] of [["Left px", "630"], ["Top px", "100"], ["Width px", "30"], ["Height px", "30"]]) {
     await page.getByLabel(label, { exact: true }).fill(value);
