@@ -79,7 +79,8 @@ impl Intake {
         };
         let captured_at_ns = picture.captured_at.nanos;
         let data = Bytes::copy_from_slice(&payload);
-        tap::offer(&self.journal, Entry { channel, captured_at_ns, sequence, data, latch: Latch::None });
+        let latch = if picture.rests_on_earlier() { Latch::Continues } else { Latch::None };
+        tap::offer(&self.journal, Entry { channel, captured_at_ns, sequence, data, latch });
         match kind {
             PictureKind::Video => self.video.offer(picture),
             PictureKind::Compressed | PictureKind::Raw => {

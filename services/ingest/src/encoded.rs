@@ -36,3 +36,11 @@ pub struct EncodedFrame {
     /// The picture itself.
     pub bytes: Bytes,
 }
+
+impl EncodedFrame {
+    /// Whether the picture can be decoded only after those before it.
+    #[must_use]
+    pub fn rests_on_earlier(&self) -> bool {
+        self.encoding == Encoding::H264 && !video::stream::is_keyframe(&self.bytes)
+    }
+}

@@ -41,6 +41,9 @@ pub enum Latch {
     /// An event: stored once.
     #[default]
     None,
+    /// An event that rests on those before it on its channel, such as a picture of a video between two keyframes:
+    /// while the channel still sends others, a new file begins with one of those.
+    Continues,
     /// State: stored when it arrives and repeated at the head of every later file (landmarks, calibration).
     Repeat(LatchKey),
     /// State too frequent to store each time, which each message of topic `of` changes (a camera's `Follow` state
@@ -58,7 +61,7 @@ pub enum Latch {
 impl Latch {
     pub(crate) fn key(&self) -> Option<&LatchKey> {
         match self {
-            Latch::None => None,
+            Latch::None | Latch::Continues => None,
             Latch::Repeat(key) | Latch::Snapshot { key, .. } => Some(key),
         }
     }

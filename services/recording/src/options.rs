@@ -48,7 +48,7 @@ impl Default for WriterOptions {
     }
 }
 
-/// When a new file is begun.
+/// When a new file is begun. Where a stream is recorded, the next file waits for its next keyframe, ten seconds at most.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rotation {
     /// Size after which the next message goes to a new file, bytes.

@@ -7,12 +7,14 @@ use std::time::Duration;
 
 use crate::{
     Attachment, Command, FileName, FileWriter, JournalOptions, Latch, LatchKey, Ledger, Message,
-    RecordingError, State, Status, Storage, file_name::is_vehicle, latched::Latched,
+    RecordingError, Rotation, State, Status, Storage, file_name::is_vehicle, latched::Latched,
     pre_trigger::PreTriggerBuffer, writer::Purpose,
 };
+use seam::Seam;
 use snapshots::SnapshotSchedule;
 
 mod files;
+mod seam;
 mod snapshots;
 #[cfg(test)]
 mod tests;
@@ -59,6 +61,8 @@ struct OpenFile<F: crate::RecordingFile> {
     sync_due: Option<Duration>,
     /// What decides whether a snapshot is stored.
     snapshots: SnapshotSchedule,
+    /// What decides where the next file begins.
+    seam: Seam,
 }
 
 impl<S: Storage> Recorder<S> {
@@ -81,12 +85,15 @@ impl<S: Storage> Recorder<S> {
         })
     }
 
-    /// Starts, stops or splits. Start and split make a failed recorder try again at once.
+    /// Starts, stops or splits; where a stream is recorded, the split waits for its next keyframe. Start and split make a failed recorder try again at once.
     pub fn command(&mut self, command: Command, now: Now) {
-        match (command, &self.phase) {
+        match (command, &mut self.phase) {
             (Command::Start, Phase::Recording(_)) | (Command::Split | Command::Stop, Phase::Off) => {}
             (Command::Start, Phase::Off) => self.start(now),
             (Command::Start | Command::Split, Phase::Failed { .. }) => self.reopen(now.unix_ns, now),
+            (Command::Split, Phase::Recording(file)) if !file.seam.is_anywhere() => {
+                file.seam.ask(now.elapsed)
+            }
             (Command::Split, Phase::Recording(_)) => {
                 self.close(now);
                 self.reopen(now.unix_ns, now);
@@ -101,19 +108,24 @@ impl<S: Storage> Recorder<S> {
     /// Takes messages that belong together: no new file begins between them.
     pub fn store(&mut self, batch: Vec<Message>, now: Now) {
         let Some(first_log_time_ns) = batch.first().map(|message| message.log_time_ns) else { return };
-        match &self.phase {
+        match &mut self.phase {
             Phase::Off => {
                 for evicted in self.pre_trigger.push(batch) {
                     self.pass_by(&evicted);
                 }
                 return;
             }
-            Phase::Recording(file) if self.is_full(file, now) => {
-                self.close(now);
-                self.reopen(first_log_time_ns, now);
+            Phase::Recording(file) => {
+                if file.is_full(&self.options.rotation, now) {
+                    file.seam.ask(now.elapsed);
+                }
+                if file.seam.is_before(&batch, now.elapsed) {
+                    self.close(now);
+                    self.reopen(first_log_time_ns, now);
+                }
             }
             Phase::Failed { retry_at, .. } if now.elapsed >= *retry_at => self.reopen(first_log_time_ns, now),
-            Phase::Recording(_) | Phase::Failed { .. } => {}
+            Phase::Failed { .. } => {}
         }
         for message in batch {
             self.store_one(&message, now);
@@ -242,6 +254,7 @@ impl<S: Storage> Recorder<S> {
             return;
         }
         file.sync_due.get_or_insert(now.elapsed + self.options.writer.flush_every);
+        file.seam.note(message);
         if let Err(error) = file.writer.write(message, message.log_time_ns, Purpose::Event) {
             self.fail(&error, now);
         }
@@ -265,9 +278,11 @@ impl<S: Storage> Recorder<S> {
             self.settled.topic(&message.channel.topic).unrecorded += 1;
         }
     }
+}
 
-    fn is_full(&self, file: &OpenFile<S::File>, now: Now) -> bool {
-        file.writer.bytes() >= self.options.rotation.max_bytes
-            || now.elapsed.saturating_sub(file.opened_at) >= self.options.rotation.max_duration
+impl<F: crate::RecordingFile> OpenFile<F> {
+    fn is_full(&self, rotation: &Rotation, now: Now) -> bool {
+        self.writer.bytes() >= rotation.max_bytes
+            || now.elapsed.saturating_sub(self.opened_at) >= rotation.max_duration
     }
 }

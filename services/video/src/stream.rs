@@ -17,6 +17,14 @@ pub enum Decoded {
     AwaitingKeyframe,
 }
 
+/// Whether a message's picture needs no other: a stream can be taken up with it.
+#[must_use]
+pub fn is_keyframe(message: &[u8]) -> bool {
+    let slices =
+        nal_units(message).map(NalKind::of).filter(|kind| matches!(kind, NalKind::Slice | NalKind::IdrSlice));
+    slices.take(1).any(|kind| kind == NalKind::IdrSlice)
+}
+
 /// Decodes one camera's stream; it must see every message, whether or not anybody looks at the picture.
 pub struct StreamDecoder {
     limits: DecodeLimits,

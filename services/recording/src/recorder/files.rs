@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::{Now, OpenFile, Phase, RETRY_EVERY, Recorder, SnapshotSchedule};
+use super::{Now, OpenFile, Phase, RETRY_EVERY, Recorder, Seam, SnapshotSchedule};
 use crate::{FileName, FileWriter, Ledger, RecordingError, Storage, writer::Purpose};
 
 /// Names tried before giving up, should other writers keep taking them.
@@ -126,6 +126,7 @@ impl<S: Storage> Recorder<S> {
                 opened_at: now.elapsed,
                 sync_due: None,
                 snapshots: SnapshotSchedule::default(),
+                seam: Seam::default(),
             }),
             Err(error) => {
                 let _ = self.storage.remove(&name.active());

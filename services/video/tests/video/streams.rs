@@ -1,6 +1,7 @@
 //! Live streams: each message gives its picture at once, and a gap is waited out.
 
 use video::access_unit::{NalKind, nal_units};
+use video::stream::is_keyframe;
 use video::{Decoded, StreamDecoder, StreamEncoder, VideoError};
 use vision::Frame;
 use vision::frame::decode::DecodeLimits;
@@ -28,6 +29,7 @@ fn each_keyframe_brings_its_parameter_sets() {
     for (number, message) in messages.iter().enumerate() {
         let kinds = kinds(message);
         assert!(message.starts_with(&[0, 0, 0, 1]), "Annex B");
+        assert_eq!(is_keyframe(message), number % 8 == 0, "{number}");
         if number % 8 == 0 {
             assert_eq!(kinds, [NalKind::Sequence, NalKind::Picture, NalKind::IdrSlice], "{number}");
         } else {

@@ -2,12 +2,11 @@
 
 #![allow(clippy::unwrap_used)] // in a test, a panic with its place is the report
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, BTreeSet};
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
 
 use analysis::again::{AgainError, AgainWriter};
 use analysis::diff::{DiffTally, changes};
@@ -15,178 +14,14 @@ use analysis::follow_choice::FollowChoice;
 use analysis::input::{Input, Past};
 use analysis::recorded::RecordedOutcomes;
 use analysis::register::{Event, Job, Timing, register};
-use bytes::Bytes;
 use recording::check::{Verdict, check};
 use recording::reader::{MessageReader, Strictness};
-use recording::{ChannelSpec, Command, Journal, JournalOptions, Latch, LatchKey, Message, Offered, Schema};
-use vision::follow::{Follow, FollowOptions, FollowState, FrameStamp, Mode};
-use vision::frame::decode::{DecodeLimits, decode};
-use vision::frame::encode::{Quality, encode_jpeg};
-use vision::{
-    ColorStats, Digest, Frame, Landmark, LandmarkSet, NoProbe, Outcome, SetVersion, ShapeClass, Timestamp,
-    WindowPx,
-};
-use waymark_proto::convert::{follow_state_to_wire, landmark_to_wire, manifest_of, registration_to_wire};
-use waymark_proto::digest::landmark_digest;
-use waymark_proto::images::{PictureFormat, picture_message};
-use waymark_proto::payload::WireMessage;
+use vision::follow::Mode;
+use vision::{LandmarkSet, Outcome};
 
-const CAMERA: &str = "front";
-const IMAGE_TOPIC: &str = "/v2/camera/front/image";
-const FRAMES: u64 = 24;
-/// Begins beyond 32 bits: MCAP keeps only the low half of a sequence number.
-const FIRST_SEQUENCE: u64 = (1 << 32) + 5;
+use crate::drive::{CAMERA, Coding, FIRST_SEQUENCE, drive, drive_sending, landmark, set};
 
-/// A red square on grey that moves to the right.
-fn picture(number: u64) -> Bytes {
-    let (left, top) = (20 + 2 * number as u32, 30);
-    let square = |x: u32, y: u32| (left..left + 18).contains(&x) && (top..top + 18).contains(&y);
-    let colour =
-        |x: u32, y: u32| if square(x, y) { [200, 40, 30] } else { [(90 + (x * 7 + y * 13) % 23) as u8; 3] };
-    let rgb = (0..96).flat_map(|y| (0..128).flat_map(move |x| colour(x, y))).collect();
-    let frame = Frame::from_rgb(128, 96, rgb).unwrap();
-    encode_jpeg(&frame, Quality::default()).unwrap().into()
-}
-
-fn landmark(id: &str, red: f32) -> Arc<Landmark> {
-    let mut landmark = Landmark {
-        id: id.to_owned(),
-        revision: 1,
-        window_px: WindowPx::square(8),
-        shades: vec![ColorStats { mean: [red, 40.0, 30.0], variance: [0.0; 3] }],
-        tolerance: ColorStats::uniform(20.0, 60.0),
-        shape: ShapeClass::Block,
-        size_m: None,
-        digest: Digest::default(),
-    };
-    landmark.digest = landmark_digest(&landmark);
-    Arc::new(landmark)
-}
-
-fn set(version: u64, landmarks: Vec<Arc<Landmark>>) -> LandmarkSet {
-    LandmarkSet { version: SetVersion { epoch: 3, version }, landmarks }
-}
-
-struct Drive {
-    journal: Journal,
-    now_ns: u64,
-}
-
-impl Drive {
-    fn record<M: WireMessage>(&mut self, topic: &str, sequence: u64, message: &M) {
-        let now = Timestamp::from_nanos(self.now_ns as i64);
-        self.record_as(topic, sequence, now, message, Latch::None);
-    }
-
-    fn record_as<M: WireMessage>(
-        &mut self,
-        topic: &str,
-        sequence: u64,
-        captured_at: Timestamp,
-        message: &M,
-        latch: Latch,
-    ) {
-        self.now_ns += 1_000_000;
-        let schema =
-            Schema { name: M::SCHEMA.to_owned(), file_descriptor_set: M::descriptors().into_owned().into() };
-        let channel =
-            Arc::new(ChannelSpec { topic: topic.to_owned(), key_expression: String::new(), schema });
-        let _counted = self.journal.offer(Message {
-            channel,
-            log_time_ns: self.now_ns,
-            publish_time_ns: captured_at.nanos as u64,
-            sequence: sequence as u32,
-            data: message.encode_to_vec().into(),
-            latch,
-        });
-    }
-
-    fn landmarks(&mut self, set: &LandmarkSet) {
-        let SetVersion { epoch, version } = set.version;
-        let now = Timestamp::from_nanos(self.now_ns as i64);
-        for landmark in &set.landmarks {
-            let latch = Latch::Repeat(LatchKey(landmark.id.clone()));
-            self.record_as("/lead/landmark", version, now, &landmark_to_wire(landmark, epoch), latch);
-        }
-        // The last of a head, as its key sorts behind every landmark's.
-        let latch = Latch::Repeat(LatchKey("~manifest".to_owned()));
-        self.record_as("/lead/manifest", version, now, &manifest_of(set), latch);
-    }
-}
-
-/// Where the camera's thread stands, and the results that nobody has recorded yet.
-struct Camera {
-    follow: Follow,
-    late: VecDeque<(Outcome, FollowState)>,
-}
-
-impl Camera {
-    fn look_at(&mut self, sequence: u64, captured_at: Timestamp, bytes: &[u8]) -> Outcome {
-        let frame = decode(bytes, &DecodeLimits::default()).unwrap();
-        let outcome = self.follow.on_frame(&frame, FrameStamp { sequence, captured_at }, &mut NoProbe);
-        self.late.push_back((outcome.clone(), self.follow.state()));
-        outcome
-    }
-
-    /// Records results until only `most` are late.
-    fn record(&mut self, drive: &mut Drive, most: usize) {
-        while self.late.len() > most {
-            let (outcome, state) = self.late.pop_front().unwrap();
-            let (sequence, captured_at) = (outcome.sequence, outcome.captured_at);
-            let registration = registration_to_wire(CAMERA, &outcome, &[]);
-            drive.record("/v2/camera/front/registration", sequence, &registration);
-            let state = follow_state_to_wire(CAMERA, self.follow.options(), &state);
-            let latch = Latch::Snapshot { key: LatchKey("front".to_owned()), of: IMAGE_TOPIC.into() };
-            drive.record_as("/v2/camera/front/follow", sequence, captured_at, &state, latch);
-        }
-    }
-}
-
-/// Follows every picture but each fourth, which a newer one replaces; changes the set half-way and begins a new file
-/// after each ninth picture. Results are recorded two pictures late, as a busy thread would.
-fn drive(directory: &Path) -> (Vec<PathBuf>, Vec<Outcome>) {
-    drive_losing(directory, None)
-}
-
-/// The same drive, in which the recorder loses one picture that is registered.
-fn drive_losing(directory: &Path, lost: Option<u64>) -> (Vec<PathBuf>, Vec<Outcome>) {
-    let journal = Journal::start(JournalOptions::new(directory, "v2")).unwrap();
-    let mut drive = Drive { journal, now_ns: 1_700_000_000_000_000_000 };
-    let sets =
-        [set(1, vec![landmark("red", 200.0)]), set(2, vec![landmark("dark", 60.0), landmark("red", 195.0)])];
-    drive.landmarks(&sets[0]);
-    let mut camera =
-        Camera { follow: Follow::new(FollowOptions::default(), sets[0].clone()), late: VecDeque::new() };
-    let mut outcomes: Vec<Outcome> = Vec::new();
-    for number in 0..FRAMES {
-        let (sequence, bytes) = (FIRST_SEQUENCE + number, picture(number));
-        let captured_at = Timestamp::from_nanos(1_700_000_000_000_000_000 + number as i64 * 33_333_333);
-        let message = picture_message(PictureFormat::Jpeg, bytes.clone(), captured_at, CAMERA);
-        if lost != Some(number) {
-            drive.record_as(IMAGE_TOPIC, sequence, captured_at, &message, Latch::None);
-        }
-        if number == FRAMES / 2 {
-            drive.landmarks(&sets[1]);
-        }
-        if number == FRAMES / 2 + 3 {
-            camera.follow.set_landmarks(sets[1].clone());
-        }
-        if number % 4 != 3 {
-            outcomes.push(camera.look_at(sequence, captured_at, &bytes));
-            camera.record(&mut drive, 2);
-        }
-        if number % 9 == 8 {
-            assert_eq!(drive.journal.command(Command::Split), Offered::Accepted);
-        }
-    }
-    camera.record(&mut drive, 0);
-    let report = drive.journal.finish(Duration::from_secs(30));
-    assert!(report.in_time);
-    let mut files: Vec<PathBuf> =
-        std::fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path()).collect();
-    files.sort();
-    (files, outcomes)
-}
+mod drive;
 
 fn replayed(input: &str, landmarks: Option<Arc<LandmarkSet>>) -> (Vec<u64>, Vec<Outcome>) {
     replayed_as(input, landmarks, FollowChoice::default())
@@ -254,7 +89,7 @@ fn a_comparison_finds_nothing_where_nothing_changed_and_something_where_it_did()
 #[test]
 fn frames_behind_a_lost_picture_are_told_apart_until_the_next_state() {
     let directory = tempfile::tempdir().unwrap();
-    let (files, _) = drive_losing(directory.path(), Some(12));
+    let (files, _) = drive_sending(directory.path(), Coding::Jpeg, Some(12));
     let tallies: Vec<DiffTally> = files.iter().map(|file| compared(file, FollowChoice::default())).collect();
     assert_eq!(tallies.iter().map(|tally| tally.different).collect::<Vec<_>>(), [0, 0, 0]);
     assert_eq!((tallies[0].without_past, tallies[2].without_past), (0, 0));
@@ -306,6 +141,24 @@ fn each_file_of_a_series_alone_replays_what_was_live_in_every_field() {
     }
     let versions: BTreeSet<u64> = outcomes.iter().map(|outcome| outcome.set_version.version).collect();
     assert_eq!(versions, BTreeSet::from([1, 2]));
+}
+
+#[test]
+fn each_file_of_recorded_video_begins_with_a_keyframe_and_replays_alone() {
+    let directory = tempfile::tempdir().unwrap();
+    let (files, live) = drive_sending(directory.path(), Coding::video(), None);
+    let replays: Vec<_> = files.iter().map(|file| replayed(file.to_str().unwrap(), None)).collect();
+    // Asked for after pictures 8 and 17, begun with the keyframes 12 and 18.
+    assert_eq!(replays.iter().map(|(numbers, _)| numbers[0]).collect::<Vec<_>>(), [1, 1, 1]);
+    assert_eq!(replays[1].1[0].sequence, FIRST_SEQUENCE + 12);
+    assert_eq!(replays[2].1[0].sequence, FIRST_SEQUENCE + 18);
+    let outcomes: Vec<Outcome> = replays.into_iter().flat_map(|(_, outcomes)| outcomes).collect();
+    let at = |outcome: &Outcome| live.iter().find(|live| live.sequence == outcome.sequence).cloned();
+    for outcome in &outcomes {
+        assert_eq!(at(outcome).as_ref(), Some(outcome), "picture {}", outcome.sequence - FIRST_SEQUENCE);
+    }
+    // Four results were late when their pictures' file ended.
+    assert_eq!(outcomes.len(), live.len() - 4);
 }
 
 #[test]
