@@ -94,6 +94,13 @@ pub struct InputFrame {
     pub pinhole: Option<Pinhole>,
 }
 
+impl InputFrame {
+    /// A frame of which nothing is known but its picture.
+    fn plain(frame: u64, name: String, picture: Result<EncodedFrame, FrameError>) -> Self {
+        Self { frame, camera: None, name, picture, live: Live::Unknown, pinhole: None }
+    }
+}
+
 /// What a recording says of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Live {

@@ -2,7 +2,7 @@
 
 use ingest::films::Film;
 
-use super::{InputFrame, Live};
+use super::InputFrame;
 
 /// A film's pictures, numbered from 1.
 #[derive(Debug)]
@@ -24,14 +24,7 @@ impl Iterator for FilmFrames {
         let picture = self.film.next()?.map_err(Into::into);
         self.frame += 1;
         let name = format!("{}, frame {}", self.film.path().display(), self.frame);
-        Some(InputFrame {
-            frame: self.frame,
-            camera: None,
-            name,
-            picture,
-            live: Live::Unknown,
-            pinhole: None,
-        })
+        Some(InputFrame::plain(self.frame, name, picture))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {

@@ -4,7 +4,7 @@ use ingest::encoded::{EncodedFrame, Encoding};
 use ingest::pictures::PictureFiles;
 use vision::Timestamp;
 
-use super::{InputFrame, Live};
+use super::InputFrame;
 
 /// Frames a second that plain pictures are taken to have been captured at: a file name carries no time.
 pub const NOMINAL_RATE_HZ: i64 = 30;
@@ -39,14 +39,7 @@ impl Iterator for PictureFrames {
             bytes: picture.bytes.into(),
         });
         let picture = picture.map_err(Into::into);
-        Some(InputFrame {
-            frame: self.frame,
-            camera: None,
-            name,
-            picture,
-            live: Live::Unknown,
-            pinhole: None,
-        })
+        Some(InputFrame::plain(self.frame, name, picture))
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
