@@ -1,6 +1,6 @@
 // What the page asks of the service it came from. Every call ends: nothing here waits for ever.
 
-import { known } from "./state.js";
+import { asStored } from "./jpeg.js";
 
 const PATIENCE_MS = 4000;
 
@@ -56,41 +56,50 @@ export function keepToken(token) {
  * @typedef {object} Picture
  * @property {ImageBitmap} bitmap
  * @property {number} sequence
- * @property {number} capturedAtMs capture time, ms since the Unix epoch
  * @property {number} ageMs age when it was sent
+ * @property {import("./drawing.js").Seen | null} seen what was seen in it, where it was told with it
  */
 
 /** @typedef {{layers: string[], format: "jpg" | "png", widthPx: number}} Wanted what a picture is to look like; `png` keeps every pixel */
 
-/** @param {Wanted} wanted */
-function queryOf({ layers, widthPx }) {
-  // A service that draws nothing does not know the parameter.
-  const query = new URLSearchParams(known.layers?.length ? { layers: layers.join(",") } : {});
-  if (widthPx > 0) query.set("width", String(widthPx));
-  return query;
-}
-
-/** @param {string} path @param {AbortSignal} stop @returns {Promise<Picture>} */
-export async function getPicture(path, stop) {
+/** @param {string} path @param {AbortSignal} stop */
+async function ask(path, stop) {
   const response = await fetch(path, { signal: AbortSignal.any([stop, AbortSignal.timeout(PATIENCE_MS + 5000)]) });
   if (!response.ok) throw await problem(response);
-  const bitmap = await createImageBitmap(await response.blob());
+  return response;
+}
+
+/** @param {Response} response @param {Blob} file @param {any} [seen] @returns {Promise<Picture>} */
+async function pictureOf(response, file, seen = null) {
+  const undecodable = () => new Problem(response.status, { detail: "this picture is damaged: the browser cannot decode it" });
+  const bitmap = await createImageBitmap(await asStored(file), { colorSpaceConversion: "none" }).catch(() => Promise.reject(undecodable()));
   return {
     bitmap,
     sequence: Number(response.headers.get("x-waymark-sequence")),
-    capturedAtMs: Number(response.headers.get("x-waymark-captured-at")) / 1e6,
     ageMs: Number(response.headers.get("x-waymark-age-ms")),
+    seen,
   };
 }
 
+/** @param {string} path @param {AbortSignal} stop */
+export async function getPicture(path, stop) {
+  const response = await ask(path, stop);
+  return pictureOf(response, await response.blob());
+}
+
 /**
- * The next picture that is not `after`; the geometry drawn into it is that of the same frame.
+ * The next picture that is not `after`, and what was seen in it: one answer, so that neither is of another frame.
  * @param {string} camera @param {number | null} after @param {Wanted} wanted @param {AbortSignal} stop
  */
-export function nextPicture(camera, after, wanted, stop) {
-  const query = queryOf(wanted);
+export async function nextPicture(camera, after, wanted, stop) {
+  const query = new URLSearchParams({ format: wanted.format });
+  if (wanted.layers.length > 0) query.set("layers", wanted.layers.join(","));
+  if (wanted.widthPx > 0) query.set("width", String(wanted.widthPx));
   if (after !== null) query.set("after", String(after));
-  return getPicture(`/api/v1/cameras/${encodeURIComponent(camera)}/overlay.${wanted.format}?${query}`, stop);
+  const response = await ask(`/api/v1/cameras/${encodeURIComponent(camera)}/seen?${query}`, stop);
+  const parts = await response.formData();
+  const seen = parts.get("seen");
+  return pictureOf(response, /** @type {File} */ (parts.get("picture")), typeof seen === "string" ? JSON.parse(seen) : null);
 }
 
 /**
@@ -98,15 +107,20 @@ export function nextPicture(camera, after, wanted, stop) {
  * @param {{name: string, camera: string}} recording @param {number} frame @param {Wanted} wanted @param {AbortSignal} stop
  */
 export async function recordedPicture({ name, camera }, frame, wanted, stop) {
-  const query = queryOf(wanted);
-  query.set("camera", camera);
-  if (wanted.format === "png") query.set("quality", "100");
+  // Every layer would be drawn unless told otherwise.
+  const query = new URLSearchParams({ camera, layers: wanted.layers.join(",") });
+  if (wanted.widthPx > 0) query.set("width", String(wanted.widthPx));
   const path = `/api/v1/recordings/${encodeURIComponent(name)}/frames/${frame}`;
   const [picture, entry] = await Promise.all([
-    getPicture(`${path}.jpg?${query}`, stop),
+    getPicture(`${path}.${wanted.format}?${query}`, stop),
     getJson(`${path}.json?${new URLSearchParams({ camera })}`),
   ]);
   return { picture, entry };
+}
+
+/** The landmarks that a recording was made with. @param {string} name */
+export async function recordedLandmarks(name) {
+  return (await getJson(`/api/v1/recordings/${encodeURIComponent(name)}/landmarks`)).landmarks ?? [];
 }
 
 /**

@@ -10,14 +10,32 @@ import { MISSING, ago, figure, levelOf, missInWords } from "./words.js";
 /** @type {Map<string, HTMLTableRowElement>} */
 const rows = new Map();
 
-/** Every landmark in force, with each instance seen by the camera shown. */
+/** @typedef {{key: string, landmark: any, entry: any, several: boolean}} Row the descriptor is null where it is not known */
+
+/** What is expected where the descriptor is not known. */
+const UNKNOWN = { shades: [{ mean: [NaN, NaN, NaN], variance: [NaN, NaN, NaN] }], tolerance: { mean: [NaN, NaN, NaN], variance: [NaN, NaN, NaN] } };
+
+/** Every landmark in force, with each instance seen by the camera shown; or those of the still frame in its place. @returns {Row[]} */
 function entries() {
   const seen = shownEntry()?.landmarks ?? [];
-  return known.landmarks.flatMap((landmark) => {
-    const instances = seen.filter((/** @type {any} */ entry) => entry.id === landmark.id);
+  const sets = known.recordedLandmarks ?? known.landmarks;
+  if (known.stillEntry?.registered) return seen.map((/** @type {any} */ entry) => rowOf(descriptorOf(entry, sets), entry, seen));
+  return sets.flatMap((landmark) => {
+    const instances = known.stillEntry ? [] : seen.filter((/** @type {any} */ entry) => entry.id === landmark.id);
     const shown = instances.length > 0 ? instances : [{ id: landmark.id, instance: 0, result: null }];
-    return shown.map((/** @type {any} */ entry) => ({ key: `${landmark.id}#${entry.instance}`, landmark, entry, several: shown.length > 1 }));
+    return shown.map((/** @type {any} */ entry) => rowOf(landmark, entry, shown));
   });
+}
+
+/** @param {any} landmark @param {any} entry @param {any[]} all @returns {Row} */
+function rowOf(landmark, entry, all) {
+  const several = all.some((other) => other.id === entry.id && other.instance !== entry.instance);
+  return { key: `${entry.id}#${entry.instance}`, landmark, entry, several };
+}
+
+/** The one that was looked for, whatever bears its name now. @param {any} entry @param {any[]} landmarks */
+function descriptorOf(entry, landmarks) {
+  return landmarks.find((landmark) => landmark.digest === entry.digest) ?? null;
 }
 
 /** A follower looks for landmarks, a leader publishes them. */
@@ -31,8 +49,9 @@ export function showLandmarks() {
   const body = byId("landmarks").querySelector("tbody");
   if (!body) return;
   reconcile(body, rows, all.map((one) => one.key), makeRow);
-  const ageMs = known.camera && !known.playbackEntry ? frameAgeMs(known.cameras.get(known.camera)) : null;
+  const ageMs = known.camera && !known.stillEntry ? frameAgeMs(known.cameras.get(known.camera)) : null;
   for (const one of all) fillRow(/** @type {HTMLTableRowElement} */ (rows.get(one.key)), one, ageMs);
+  byId("landmarks").dataset.sequence = String(shownEntry()?.sequence ?? "");
   byId("landmarks").hidden = all.length === 0;
   byId("landmark-none").hidden = all.length > 0;
   setText(byId("landmark-none"), isFollower()
@@ -40,7 +59,8 @@ export function showLandmarks() {
     : "No landmark is published.");
   const isOld = ageMs !== null && ageMs > STALE_AFTER_MS;
   const measured = isOld ? 0 : all.filter((one) => one.entry.result === "measured").length;
-  const version = known.version ? ` · set ${known.version.epoch}.${known.version.version}` : "";
+  const set = known.stillEntry ? known.stillEntry.set : known.version;
+  const version = set ? ` · set ${set.epoch}.${set.version}` : "";
   const count = isFollower() ? `${measured} of ${all.length} measured` : `${all.length} published`;
   setText(byId("landmark-facts"), count + version);
 }
@@ -124,15 +144,15 @@ function makeStatistic(channel) {
     make("span", "channel quiet", channel), make("span", "expected quiet"), make("span", "observed"), makeState("verdict"));
 }
 
-/** @param {HTMLTableRowElement} row @param {{landmark: any, entry: any, several: boolean}} one @param {number | null} ageMs */
+/** @param {HTMLTableRowElement} row @param {Row} one @param {number | null} ageMs */
 function fillRow(row, { landmark, entry, several }, ageMs) {
   const [name, result, mean, variance, facts] = row.children;
-  setText(name.children[0], several ? `${landmark.id} #${entry.instance}` : landmark.id);
-  const comparison = compare(landmark, entry.observed ?? entry.miss?.observed, entry.gain);
+  setText(name.children[0], several ? `${entry.id} #${entry.instance}` : entry.id);
+  const comparison = compare(landmark ?? UNKNOWN, entry.observed ?? entry.miss?.observed, entry.gain);
   const shade = comparison.shades > 1 ? ` · shade ${comparison.shade} of ${comparison.shades}` : "";
-  setText(name.children[1], `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}`);
+  setText(name.children[1], landmark ? `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}` : "another descriptor than is known here");
   showButton(result, entry);
-  fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry, ageMs, landmark.revision);
+  fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry, ageMs, landmark?.revision);
   comparison.mean.forEach((one, index) => fillStatistic(mean.children[0].children[index], one));
   comparison.variance.forEach((one, index) => fillStatistic(variance.children[0].children[index], one));
   fillFacts(facts.firstElementChild, entry);
@@ -142,7 +162,7 @@ function fillRow(row, { landmark, entry, several }, ageMs) {
 function showButton(result, entry) {
   const [, button, words] = /** @type {HTMLElement[]} */ ([...result.children]);
   if (isFollower()) {
-    const isMissed = entry.result !== null && entry.result !== "measured" && !known.playbackEntry;
+    const isMissed = entry.result !== null && entry.result !== "measured" && !known.stillEntry;
     // Once asked, the words stay until the next question: landmarks come and go within a moment.
     button.hidden = !isMissed && words?.textContent === "";
   } else /** @type {HTMLButtonElement} */ (button).disabled = known.access === "read_only";
@@ -152,7 +172,8 @@ function showButton(result, entry) {
 function fillResult(state, entry, ageMs, revision) {
   const measured = entry.result === "measured";
   if (entry.result === null) {
-    showState(state, "unknown", isFollower() ? "not looked for yet" : `published, revision ${revision}`);
+    const words = known.stillEntry ? "this frame was not registered" : "not looked for yet";
+    showState(state, "unknown", isFollower() ? words : `published, revision ${revision}`);
   } else if (ageMs !== null && ageMs > STALE_AFTER_MS) {
     showState(state, "warn", `not now: last ${measured ? "measured" : "missed"} ${ago(ageMs / 1000)}`);
   } else if (measured) {
@@ -165,11 +186,12 @@ function fillResult(state, entry, ageMs, revision) {
 /** @param {Element} element @param {import("./statistics.js").Comparison} one */
 function fillStatistic(element, one) {
   const [, expected, observed, verdict] = element.children;
-  setText(expected, `${one.expected.toFixed(0)} ± ${one.tolerance.toFixed(0)}`);
+  const isKnown = Number.isFinite(one.expected);
+  setText(expected, isKnown ? `${one.expected.toFixed(0)} ± ${one.tolerance.toFixed(0)}` : MISSING);
   setText(observed, figure(one.observed, 0));
   const state = /** @type {HTMLElement} */ (verdict);
-  state.hidden = one.within === null;
-  if (one.offBy === null) return;
+  state.hidden = one.within === null || !isKnown;
+  if (one.offBy === null || !isKnown) return;
   if (one.within) showState(state, "good", "within");
   else showState(state, "bad", `${Math.max(1, Math.abs(one.offBy)).toFixed(0)} ${one.offBy > 0 ? "over" : "under"}`);
 }

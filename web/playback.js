@@ -1,5 +1,6 @@
 // A recording that is looked at in the place of the live picture: which of its frames is wanted now.
 
+import { recordedLandmarks } from "./api.js";
 import { byId, make, setText } from "./dom.js";
 import { lesson } from "./lesson.js";
 import { known } from "./state.js";
@@ -43,13 +44,22 @@ export function whenPlaybackChanges(listener) {
 export function play(name, camera, durationS) {
   const rateHz = durationS > 0 ? Math.max(0.1, (camera.frames - 1) / durationS) : 30;
   current = { name, camera: camera.id, frames: camera.frames, rateHz, frame: 0, running: true, speed: 1, ranAt: performance.now(), ranFrom: 0 };
+  void learnLandmarks(name);
   changed();
+}
+
+/** The recording's own: others may be in force by now. @param {string} name */
+async function learnLandmarks(name) {
+  known.recordedLandmarks = [];
+  const landmarks = await recordedLandmarks(name).catch(() => []);
+  if (current?.name === name) known.recordedLandmarks = landmarks;
 }
 
 /** Gives the place back to the live picture. */
 export function leave() {
   current = null;
-  known.playbackEntry = null;
+  known.stillEntry = null;
+  known.recordedLandmarks = null;
   changed();
 }
 

@@ -3,6 +3,7 @@
 
 import { byId, setAttribute, setText } from "./dom.js";
 import { hold, isHeld, restartLive } from "./live.js";
+import { isReduced } from "./picture.js";
 import { known } from "./state.js";
 import { compare } from "./statistics.js";
 
@@ -31,7 +32,7 @@ export function startProbe() {
 function zoom() {
   const factor = Number(/** @type {HTMLSelectElement} */ (byId("zoom")).value);
   byId("stage").classList.toggle("zoomed", factor > 0);
-  for (const one of [canvas, byId("marks")]) one.style.width = factor > 0 ? `${canvas.width * factor}px` : "";
+  for (const one of [canvas, byId("drawing"), byId("marks")]) one.style.width = factor > 0 ? `${canvas.width * factor}px` : "";
 }
 
 /** The frame is fitted into the element without distortion, so there may be margins. @param {PointerEvent} event @returns {[number, number]} */
@@ -71,7 +72,8 @@ export function showProbe() {
     window
       ? `Window ${windowSide()} × ${windowSide()} px: mean ${rounded(window.mean)} levels, variance ${rounded(window.variance)} levels². ${verdict(window)}`
       : "The window does not lie wholly inside the picture.",
-    known.layersOn.size > 0 ? "Layers are drawn over the pixels: switch them off to read the bare frame." : "",
+    known.layersOn.has("mask") ? "The mask is drawn into the pixels: switch it off to read the bare frame." : "",
+    isReduced() ? "The picture is smaller than the frame: hold it, or have it as sent, to read the frame's own pixels." : "",
   ];
   // While pictures run, the values change faster than anybody can be told.
   setAttribute(byId("probe"), "aria-live", isHeld() ? "polite" : "off");

@@ -13,7 +13,8 @@
  * @property {string[] | null} layers that can be drawn, once they are known
  * @property {Set<string>} layersOn that are drawn
  * @property {boolean} following events arrive
- * @property {any} playbackEntry what was said of the recorded frame that is shown, while one is shown
+ * @property {any} stillEntry what was said of the frame that is shown, while that is a recorded or a held one
+ * @property {any[] | null} recordedLandmarks descriptors of the recording that is shown, while one is shown
  */
 
 /** @type {Known} */
@@ -29,7 +30,8 @@ export const known = {
   layers: null,
   layersOn: new Set(),
   following: false,
-  playbackEntry: null,
+  stillEntry: null,
+  recordedLandmarks: null,
 };
 
 /** @param {any} camera */
@@ -54,9 +56,9 @@ export function learnStatus(status, access) {
   }
 }
 
-/** What is said of the picture that is shown: of the live one, or of a recorded one in its place. */
+/** What is said of the picture that is shown: of the live one, or of a recorded or held one in its place. */
 export function shownEntry() {
-  if (known.playbackEntry) return known.playbackEntry;
+  if (known.stillEntry) return known.stillEntry;
   return known.camera ? known.cameras.get(known.camera) : null;
 }
 

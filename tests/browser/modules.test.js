@@ -77,3 +77,44 @@ test("a value is found at a moment, and gaps stay gaps", async () => {
   }
   assert.equal(await call("/history.js", "valueAt", [], 5), null);
 });
+
+test("labels stay off each other and off what is named, and inside the room", async () => {
+  const about = { x: 290, y: 180, w: 20, h: 20 };
+  const wanted = [...Array.from({ length: 7 }, () => ({ about, w: 70 })), { about: null, w: 70 }, { about: null, w: 70 }];
+  const placed = await call("/labels.js", "placeLabels", wanted, { w: 320, h: 200 }, 18);
+  const overlap = (/** @type {any} */ a, /** @type {any} */ b) => a.x < b.x + b.w && b.x < a.x + a.w && a.y < b.y + b.h && b.y < a.y + a.h;
+  assert.equal(overlap(placed[0], about), false);
+  placed.forEach((/** @type {any} */ place, /** @type {number} */ index) => {
+    assert.ok(place.x >= 0 && place.y >= 0 && place.x + place.w <= 320 && place.y + place.h <= 200, JSON.stringify(place));
+    for (const other of placed.slice(0, index)) assert.equal(overlap(place, other), false, `${JSON.stringify(place)} ${JSON.stringify(other)}`);
+  });
+});
+
+test("labels say what was measured or why not, as the service's own do", async () => {
+  const seen = { id: "red", instance: 0, result: "measured", x_px: 458.46, y_px: 325.64, area_px2: 588.6, miss: null };
+  assert.equal(await call("/drawing.js", "labelOf", seen, true), "red  x 458.5 y 325.6  589 px²");
+  assert.equal(await call("/drawing.js", "labelOf", { ...seen, instance: 2 }, false), "red#2");
+  const missed = (/** @type {string} */ result, /** @type {object} */ figures) => ({ id: "blue", instance: 1, result, miss: { reason: result, ...figures } });
+  assert.equal(await call("/drawing.js", "labelOf", missed("outside_gate", { innovation_px: 34.4 }), true), "blue#1: outside gate (34 px off)");
+  assert.equal(await call("/drawing.js", "labelOf", missed("occluded", { visible: 0.3 }), true), "blue#1: occluded (30 % seen)");
+  assert.equal(await call("/drawing.js", "labelOf", missed("no_colour", { excess: 2 }), true), "blue#1: no colour");
+});
+
+test("a picture is shown as its pixels are stored, whatever its Exif says", async () => {
+  const sizes = await page.evaluate(async () => {
+    const canvas = new OffscreenCanvas(40, 20);
+    canvas.getContext("2d")?.fillRect(0, 0, 40, 20);
+    const jpeg = await canvas.convertToBlob({ type: "image/jpeg" });
+    // Exif that says: turn it by 90 degrees.
+    const exif = [0xff, 0xe1, 0, 34, 0x45, 0x78, 0x69, 0x66, 0, 0, 0x4d, 0x4d, 0, 0x2a, 0, 0, 0, 8, 0, 1, 1, 0x12, 0, 3, 0, 0, 0, 1, 0, 6, 0, 0, 0, 0, 0, 0];
+    const turned = new Blob([jpeg.slice(0, 2), new Uint8Array(exif), jpeg.slice(2)], { type: "image/jpeg" });
+    const { asStored } = await import(/** @type {any} */ ("/jpeg.js"));
+    const sizeOf = async (/** @type {Blob} */ file) => {
+      const { width, height } = await createImageBitmap(file);
+      return [width, height];
+    };
+    const cut = await asStored(turned.slice(0, 9));
+    return [await sizeOf(turned), await sizeOf(await asStored(turned)), (await asStored(jpeg)) === jpeg, cut.size];
+  });
+  assert.deepEqual(sizes, [[20, 40], [40, 20], true, 2]);
+});

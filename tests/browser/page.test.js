@@ -37,6 +37,11 @@ test("loads without a complaint, from this service alone, and is light", async (
   });
   await page.goto(demo.url);
   await page.waitForFunction(() => Boolean(document.querySelector("#picture")?.dataset.sequence));
+  // The camera's pictures are passed on as they came, however many are looked at.
+  const first = Number(await page.locator("#picture").getAttribute("data-sequence"));
+  await page.waitForFunction((first) => Number(document.querySelector("#picture")?.dataset.sequence) >= first + 5, first);
+  const metrics = await (await fetch(`${demo.url}/metrics`)).text();
+  assert.match(metrics, /waymark_http_encodes_total\{camera="front"\} 0\n/);
   await context.close();
   assert.deepEqual(foreign, []);
   assert.ok(bytes > 0 && bytes <= 250_000, `${bytes} bytes before the first picture`);
@@ -74,23 +79,67 @@ test("red and blue are measured, with six statistics each, expected and observed
   await close();
 });
 
-test("layers are asked of the service as they are toggled, also from the keyboard", async () => {
+test("layers are drawn by the page as they are toggled, also from the keyboard", async () => {
   const { page, complaints, close } = await openWatched(browser, demo.url);
-  const layersOf = (/** @type {import("playwright-core").Request} */ request) =>
-    (new URL(request.url()).searchParams.get("layers") ?? "").split(",");
-  const isPicture = (/** @type {import("playwright-core").Request} */ request) => request.url().includes("/overlay.jpg");
-  const boxes = page.locator("#layers input");
+  // On a picture that stands still nothing else changes the drawing.
+  await measuredAndHeld(page);
+  const inked = () => page.locator("#drawing").evaluate((canvas) => {
+    const drawing = /** @type {HTMLCanvasElement} */ (canvas);
+    const copy = new OffscreenCanvas(drawing.width, drawing.height).getContext("2d", { willReadFrequently: true });
+    copy?.drawImage(drawing, 0, 0);
+    return copy?.getImageData(0, 0, drawing.width, drawing.height).data.reduce((sum, value) => sum + value, 0) ?? 0;
+  });
+  const boxes = page.locator("#layers input:not([name=mask])");
   assert.ok((await boxes.count()) >= 5, "there are layers to choose from");
-  for (const box of await boxes.all()) {
-    const name = (await box.getAttribute("name")) ?? "";
-    for (let times = 0; times < 2; times += 1) {
-      const wanted = !(await box.isChecked());
-      const asked = page.waitForRequest((request) => isPicture(request) && layersOf(request).includes(name) === wanted);
-      await box.focus();
-      await page.keyboard.press("Space");
-      await asked;
-    }
+  const toggle = async (/** @type {import("playwright-core").Locator} */ box) => {
+    await box.focus();
+    await page.keyboard.press("Space");
+  };
+  const all = await inked();
+  for (const box of await boxes.all()) await toggle(box);
+  assert.equal(await inked(), 0, "nothing is drawn without a layer");
+  for (const box of await boxes.all()) await toggle(box);
+  assert.equal(await inked(), all, "all of it comes back");
+  for (const name of ["outline", "vector", "labels"]) {
+    await toggle(page.locator(`#layers input[name=${name}]`));
+    assert.notEqual(await inked(), all, name);
+    await toggle(page.locator(`#layers input[name=${name}]`));
   }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+/** Holds a frame in which something was measured. @param {import("playwright-core").Page} page */
+async function measuredAndHeld(page) {
+  await page.getByRole("button", { name: "Hold" }).click();
+  for (let tries = 0; tries < 100; tries += 1) {
+    await page.locator("#frame-facts").getByText(/held/).waitFor();
+    const former = await page.locator("#picture").getAttribute("data-sequence");
+    if (await page.locator("#picture").getAttribute("aria-label").then((label) => /measured: /.test(label ?? ""))) return;
+    await page.getByRole("button", { name: "Next frame" }).click();
+    await page.waitForFunction((former) => document.querySelector("#picture")?.dataset.sequence !== former, former);
+  }
+  throw new Error("nothing is ever measured");
+}
+
+test("the mask is drawn by the service, only while it is wanted", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  const asksFor = (/** @type {boolean} */ mask) => page.waitForRequest((request) =>
+    request.url().includes("/seen?") && (new URL(request.url()).searchParams.get("layers") === "mask") === mask);
+  for (const wanted of [true, false]) {
+    const asked = asksFor(wanted);
+    await page.getByLabel("Mask").setChecked(wanted);
+    await asked;
+  }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test("a slow way gets smaller pictures, when that is chosen, with the drawing in its place", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  await page.locator("#size").selectOption("320");
+  await page.locator("#frame-facts").getByText(/ 320 × \d+ px/).waitFor();
+  await page.waitForFunction(() => document.querySelector("#drawing")?.dataset.sequence === document.querySelector("#picture")?.dataset.sequence);
   assert.deepEqual(complaints, []);
   await close();
 });

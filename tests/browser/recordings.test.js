@@ -69,12 +69,46 @@ test("playback runs by itself and stops at the end", async () => {
   await close();
 });
 
+test("a recorded frame is told with the landmarks that it was registered with, bearing included", async () => {
+  const { page, complaints, close } = await openWatched(browser, demo.url);
+  const line = await finishOne(page);
+  // What is in force by now is another set.
+  const retired = await fetch(`${demo.leaderUrl}/api/v1/landmarks/blue`, { method: "DELETE" });
+  assert.equal(retired.status, 200);
+  await page.locator("#landmarks .name", { hasText: /^blue/ }).first().waitFor({ state: "detached" });
+  await line.getByRole("button", { name: "Look at it" }).click();
+  await page.locator("#frame-facts").getByText(/recorded/).waitFor();
+  await page.locator("#playback-toggle").click();
+  const slider = page.locator("#playback-frame");
+  const last = Number(await slider.getAttribute("max"));
+  const blue = page.locator("#landmarks tbody tr", { has: page.locator(".name", { hasText: /^blue/ }) }).first();
+  const bearings = async () => (await page.locator("#landmarks .facts-list div", { hasText: "Bearing" }).locator("dd").allTextContents()).filter((text) => text !== "—");
+  for (let frame = last; frame >= 0 && (await bearings()).length === 0; frame -= 1) {
+    await slider.fill(String(frame));
+    await page.locator(`#picture[data-frame="${frame}"]`).waitFor();
+    // The table follows the picture at its own pace.
+    await page.waitForFunction(() => {
+      const [picture, table] = ["#picture", "#landmarks"].map((id) => /** @type {HTMLElement} */ (document.querySelector(id)).dataset);
+      return picture.sequence === table.sequence;
+    });
+  }
+  assert.match((await bearings())[0] ?? "no frame has a bearing", /^\d+\.\d° (left|right|ahead)$/);
+  assert.match((await blue.locator(".expected").first().textContent()) ?? "", /^\d+ ± \d+$/);
+  assert.match((await page.locator("#landmark-facts").textContent()) ?? "", /set \d+\.\d+$/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("layers are drawn into recorded pictures as into live ones", async () => {
   const { page, complaints, close } = await openWatched(browser, demo.url);
   const line = await finishOne(page);
   await line.getByRole("button", { name: "Look at it" }).click();
   await page.locator("#frame-facts").getByText(/recorded/).waitFor();
-  const asked = page.waitForRequest((request) => /frames\/\d+\.jpg/.test(request.url()) && request.url().includes("mask"));
+  const asked = page.waitForRequest((request) => /frames\/\d+\.(jpg|png)/.test(request.url()) && request.url().includes("mask"));
+  await page.waitForFunction(() => {
+    const [picture, drawing] = ["#picture", "#drawing"].map((id) => /** @type {HTMLElement} */ (document.querySelector(id)).dataset);
+    return picture.sequence === drawing.sequence;
+  });
   await page.getByLabel("Mask").check();
   await asked;
   assert.deepEqual(complaints, []);

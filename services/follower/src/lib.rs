@@ -24,6 +24,7 @@ mod post;
 mod recordings;
 mod results;
 mod run;
+pub mod seen_frame;
 mod set_file;
 mod state_log;
 mod station;

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
+use crate::pictures_out::Shown;
 use http_face::{Cameras, Counters};
-use ingest::camera_thread::Registered;
 use metrics::{counter, describe_counter, gauge};
 use metrics_exporter_prometheus::PrometheusBuilder;
 
@@ -45,7 +45,7 @@ pub(crate) fn exposition(
     fleet: &FleetStatus,
     stations: &[Arc<Station>],
     landmarks: &LandmarkCounters,
-    cameras: &Cameras<Registered>,
+    cameras: &Cameras<Shown>,
     refusals: &Counters,
 ) -> String {
     let recorder = PrometheusBuilder::new().build_recorder();
@@ -65,7 +65,7 @@ pub(crate) fn exposition(
 }
 
 /// The web face: what it encoded for viewers, and whom it turned away.
-fn face(cameras: &Cameras<Registered>, refusals: &Counters) {
+fn face(cameras: &Cameras<Shown>, refusals: &Counters) {
     for (camera, encoded) in cameras.encoded() {
         counter!("waymark_http_encodes_total", "camera" => camera.to_owned()).absolute(encoded);
     }

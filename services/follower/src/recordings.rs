@@ -1,27 +1,31 @@
 //! The recordings of a vehicle, as its web face shows them.
 
 mod frame;
+mod landmarks;
 mod listing;
+mod recent;
 mod registrations;
-mod timelines;
+mod topics;
 mod web;
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use recording::FileName;
+use recording::timeline::Timeline;
+use vision::Landmark;
 
-use crate::pictures_out::Landmarks;
-use timelines::Timelines;
+use recent::Recent;
 pub(crate) use web::routes;
 
 /// The directory that the recorder writes to.
 #[derive(Debug)]
 pub(crate) struct Shelf {
     directory: PathBuf,
-    landmarks: Landmarks,
-    timelines: Timelines,
+    timelines: Recent<Timeline>,
+    landmarks: Recent<Vec<Arc<Landmark>>>,
 }
 
 /// A recording that is there.
@@ -36,8 +40,8 @@ struct Found {
 }
 
 impl Shelf {
-    pub(crate) fn new(directory: &Path, landmarks: Landmarks) -> Self {
-        Self { directory: directory.to_owned(), landmarks, timelines: Timelines::default() }
+    pub(crate) fn new(directory: &Path) -> Self {
+        Self { directory: directory.to_owned(), timelines: Recent::default(), landmarks: Recent::default() }
     }
 
     /// The recording that is called `name` once it is finished. Names are only ever looked up in the directory itself:
@@ -90,17 +94,13 @@ impl Shelf {
 mod tests {
     use super::*;
 
-    fn nothing() -> Landmarks {
-        tokio::sync::watch::channel(Default::default()).1
-    }
-
     const NAME: &str = "car-20240301T000000Z-0001.mcap";
 
     #[test]
     fn only_recordings_in_the_directory_itself_are_found() {
         let place = tempfile::tempdir().unwrap();
         let directory = place.path().join("recordings");
-        let shelf = Shelf::new(&directory, nothing());
+        let shelf = Shelf::new(&directory);
         assert!(shelf.all().unwrap().is_empty() && shelf.find(NAME).unwrap().is_none());
         fs::create_dir(&directory).unwrap();
         fs::write(place.path().join(NAME), "outside").unwrap();
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn a_recording_keeps_its_name_while_it_is_written() {
         let place = tempfile::tempdir().unwrap();
-        let shelf = Shelf::new(place.path(), nothing());
+        let shelf = Shelf::new(place.path());
         let active = place.path().join(format!("{NAME}.active"));
         fs::write(&active, "12").unwrap();
         let written = shelf.find(NAME).unwrap().unwrap();

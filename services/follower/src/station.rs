@@ -9,6 +9,7 @@ use ingest::encoded::EncodedFrame;
 use ingest::mailbox::Mailbox;
 use ingest::video_thread::VideoCounters;
 use tokio::sync::watch;
+use vision::Place;
 
 use crate::burned_in;
 use crate::counters::IntakeCounters;
@@ -94,27 +95,33 @@ impl Station {
         self.losses.thread.registered()
     }
 
+    /// Where the landmarks of a frame are.
+    pub(crate) fn places(&self, registered: &Registered) -> Vec<Place> {
+        self.surroundings.places(&registered.outcome)
+    }
+
     /// How the camera is now.
     pub(crate) fn status(&self) -> CameraStatus {
-        self.status_with(self.latest.borrow().clone())
+        let newest = self.latest.borrow().clone();
+        let places = newest.as_ref().map_or_else(Vec::new, |newest| self.places(newest));
+        self.status_with(newest.as_deref().map(|newest| (newest, places.as_slice())))
     }
 
     /// How the camera was when `newest` was its newest frame: by the time a frame is told of there may be another.
-    pub(crate) fn status_with(&self, newest: Option<Arc<Registered>>) -> CameraStatus {
-        let age = newest.as_ref().map(|newest| newest.finished_at.elapsed());
+    pub(crate) fn status_with(&self, newest: Option<(&Registered, &[Place])>) -> CameraStatus {
+        let (newest, places) = newest.unzip();
+        let age = newest.map(|newest| newest.finished_at.elapsed());
         CameraStatus {
             id: self.id.clone(),
             state: camera_state(age),
-            sequence: newest.as_ref().map(|newest| newest.outcome.sequence),
+            sequence: newest.map(|newest| newest.outcome.sequence),
             age_ms: age.map(milliseconds),
             fps: self.rate.lock().unwrap_or_else(PoisonError::into_inner).rate_hz(Instant::now()),
-            latency_ms: newest.as_ref().map(|newest| latency_ms(newest)),
-            processing_ms: newest
-                .as_ref()
-                .map(|newest| milliseconds(newest.decode_time + newest.register_time)),
+            latency_ms: newest.map(latency_ms),
+            processing_ms: newest.map(|newest| milliseconds(newest.decode_time + newest.register_time)),
             dropped: self.dropped(),
             landmarks: newest.map_or_else(Vec::new, |newest| {
-                landmarks_from_outcome(&newest.outcome, &self.surroundings.places(&newest.outcome))
+                landmarks_from_outcome(&newest.outcome, places.unwrap_or_default())
             }),
         }
     }

@@ -266,7 +266,7 @@ pub fn landmarks_from_outcome(outcome: &Outcome, places: &[Place]) -> Vec<Landma
     outcome.landmarks.iter().zip(places).map(|(one, place)| landmark_from_outcome(one, place)).collect()
 }
 
-fn landmark_from_outcome(outcome: &LandmarkOutcome, place: Place) -> LandmarkStatus {
+pub(crate) fn landmark_from_outcome(outcome: &LandmarkOutcome, place: Place) -> LandmarkStatus {
     let sighting = outcome.result.as_ref().ok();
     let miss = outcome.result.as_ref().err();
     let prediction = outcome.prediction;

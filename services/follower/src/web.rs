@@ -29,7 +29,7 @@ use crate::config::FollowerConfig;
 use crate::landmark_feed::LandmarkFeed;
 use crate::leader_watch::LeaderWatch;
 use crate::metrics;
-use crate::pictures_out;
+use crate::pictures_out::{self, Shown};
 use crate::post::Post;
 use crate::recordings::{self, Shelf};
 use crate::station::Station;
@@ -49,7 +49,7 @@ pub(crate) struct Face {
     pub(crate) leader: LeaderWatch,
     pub(crate) stations: Vec<Arc<Station>>,
     pub(crate) journal: Arc<Journal>,
-    pub(crate) cameras: Arc<Cameras<Registered>>,
+    pub(crate) cameras: Arc<Cameras<Shown>>,
     pub(crate) events: Arc<Events>,
     pub(crate) landmark_counters: Arc<crate::counters::LandmarkCounters>,
     pub(crate) recordings: PathBuf,
@@ -63,7 +63,7 @@ pub(crate) fn routes(face: &Arc<Face>) -> Router {
     let api = Api::new("Waymark follower", env!("CARGO_PKG_VERSION"));
     let api = face.cameras.routes(service_routes(api, face));
     let api = explanations::routes(api, face);
-    let api = recordings::routes(landmarks(api, face), Shelf::new(&face.recordings, face.landmarks.clone()));
+    let api = recordings::routes(landmarks(api, face), Shelf::new(&face.recordings));
     api.undescribed(page()).finish()
 }
 
@@ -109,7 +109,7 @@ impl Face {
         let cameras = Cameras::new(
             config.cameras.clone(),
             pictures_out::LAYERS,
-            &pictures_out::renderer(feed.landmarks()),
+            pictures_out::depiction(feed.landmarks()),
         );
         Self {
             vehicle: config.vehicle.clone(),
@@ -155,7 +155,8 @@ impl Face {
     /// Shows a registered frame to whoever looks.
     pub(crate) fn show(&self, station: &Station, registered: Arc<Registered>) {
         station.count_frame(registered.finished_at);
-        let status = station.status_with(Some(Arc::clone(&registered)));
+        let places = station.places(&registered);
+        let status = station.status_with(Some((&registered, &places)));
         if let Err(error) = self.events.publish("camera", &status) {
             tracing::error!(%error, "an event could not be written as JSON");
         }
@@ -164,7 +165,7 @@ impl Face {
                 sequence: registered.outcome.sequence,
                 captured_at_ns: registered.outcome.captured_at.nanos,
                 received_at: registered.finished_at.into(),
-                source: registered,
+                source: Arc::new(Shown { registered, places }),
             });
         }
     }

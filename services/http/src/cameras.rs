@@ -7,7 +7,8 @@ use crate::mjpeg::{StreamSlots, stream};
 use crate::parameters::Parameters;
 use crate::pictures::{Picture, PictureFeed};
 use crate::problem::Problem;
-use crate::renditions::{Format, PictureRequest, Render, Renditions};
+use crate::renditions::{Depiction, Format, PictureRequest, Renditions};
+use crate::told_picture::told_picture;
 use axum::Json;
 use axum::body::Bytes;
 use axum::extract::{Path, State};
@@ -41,13 +42,15 @@ pub(crate) struct Camera<T> {
 }
 
 impl<T: Send + Sync + 'static> Cameras<T> {
-    /// Cameras by id; `layers` are the names that `render` can draw, all of them drawn unless asked otherwise.
+    /// Cameras by id; `layers` are the names that can be drawn, all of them in an overlay unless asked otherwise.
     pub fn new(
         ids: impl IntoIterator<Item = String>,
         layers: &'static [&'static str],
-        render: &Arc<Render<T>>,
+        depiction: Depiction<T>,
     ) -> Self {
-        let camera = || Camera { feed: PictureFeed::default(), views: Renditions::new(Arc::clone(render)) };
+        let depiction = Arc::new(depiction);
+        let camera =
+            || Camera { feed: PictureFeed::default(), views: Renditions::new(Arc::clone(&depiction)) };
         let cameras = ids.into_iter().map(|id| (id, Arc::new(camera()))).collect();
         Self { cameras, layers, slots: StreamSlots::default() }
     }
@@ -63,7 +66,8 @@ impl<T: Send + Sync + 'static> Cameras<T> {
         self.cameras.iter().map(|(id, camera)| (id.as_str(), camera.views.encoded()))
     }
 
-    /// `/api/v1/cameras`, and below it for each camera `frame.jpg`, `overlay.jpg`, `overlay.png` and `stream.mjpeg`.
+    /// `/api/v1/cameras`, and below it for each camera `frame.jpg`, `overlay.jpg`, `overlay.png`, `seen` and
+    /// `stream.mjpeg`.
     #[must_use]
     pub fn routes(self: &Arc<Self>, api: Api) -> Api {
         let shared = || Arc::clone(self);
@@ -72,12 +76,14 @@ impl<T: Send + Sync + 'static> Cameras<T> {
         let bare = description::jpeg("The newest frame", &[]);
         let drawn = description::jpeg("The newest frame, with what was seen in it", self.layers);
         let exact = description::png("The same without loss", self.layers);
+        let seen_of = description::seen(self.layers);
         let motion_of = description::stream(self.layers);
         let at = |name: &str| format!("/api/v1/cameras/{{camera}}/{name}");
         api.route("/api/v1/cameras", [index_of.gives::<Index>()], get(index::<T>).with_state(shared()))
             .route(&at("frame.jpg"), [bare], get(frame::<T>).with_state(shared()))
             .route(&at("overlay.jpg"), [drawn], get(overlay_jpeg::<T>).with_state(shared()))
             .route(&at("overlay.png"), [exact], get(overlay_png::<T>).with_state(shared()))
+            .route(&at("seen"), [seen_of], get(seen::<T>).with_state(shared()))
             .route(&at("stream.mjpeg"), [motion_of], get(motion::<T>).with_state(shared()))
     }
 
@@ -137,12 +143,45 @@ async fn single<T: Send + Sync + 'static>(
     let after = query.number("after", 0..=u64::MAX)?;
     let request = PictureRequest::asked(&mut query, format, layers)?;
     query.finish()?;
-    let picture = match after {
-        Some(sequence) => camera.feed.after(sequence, LONG_POLL).await?,
-        None => camera.feed.latest()?,
-    };
+    let picture = camera.wait(after).await?;
     let bytes = camera.views.view(&picture, &request).await?;
     Ok(with_provenance(&picture, format, bytes))
+}
+
+/// A picture and what was seen in it, in one answer: neither can be of another frame.
+async fn seen<T: Send + Sync + 'static>(
+    State(cameras): Shared<T>,
+    Path(id): Path<String>,
+    uri: Uri,
+) -> Result<Response, Problem> {
+    let camera = cameras.camera(&id)?;
+    let mut query = Parameters::parse(uri.query())?;
+    let after = query.number("after", 0..=u64::MAX)?;
+    let format = match query.text("format").as_deref() {
+        None | Some("jpg") => Format::Jpeg,
+        Some("png") => Format::Png,
+        Some(other) => return Err(Problem::parameter("format", other, "jpg or png")),
+    };
+    let request = PictureRequest::bare_unless_asked(&mut query, format, cameras.layers)?;
+    query.finish()?;
+    let picture = camera.wait(after).await?;
+    let bytes = camera.views.view(&picture, &request).await?;
+    let told = camera.views.told(&picture)?;
+    let mut response = told_picture(format, &bytes, told.as_deref());
+    response
+        .headers_mut()
+        .extend(provenance(&picture).map(|(name, value)| (HeaderName::from_static(name), value)));
+    Ok(response)
+}
+
+impl<T: Send + Sync + 'static> Camera<T> {
+    /// The newest picture, or the first that is not `after`.
+    async fn wait(&self, after: Option<u64>) -> Result<Picture<T>, Problem> {
+        match after {
+            Some(sequence) => self.feed.after(sequence, LONG_POLL).await,
+            None => self.feed.latest(),
+        }
+    }
 }
 
 async fn motion<T: Send + Sync + 'static>(

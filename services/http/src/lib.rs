@@ -46,6 +46,7 @@ mod serve;
 mod settings;
 mod shell;
 mod stall;
+mod told_picture;
 mod viewers;
 
 pub use api::{Api, Operation, integer};
@@ -63,7 +64,7 @@ pub use parameters::Parameters;
 pub use pictures::{Picture, PictureFeed, STALE_AFTER, camera_state};
 pub use policy::{Access, Policy, Token, TokenError};
 pub use problem::{PROBLEM_JSON, Problem};
-pub use renditions::{Format, PictureRequest, Render};
+pub use renditions::{Depiction, Format, PictureRequest, Render, Tell};
 pub use serve::{ServeReport, serve};
 pub use settings::HttpSettings;
 pub use viewers::ForViewers;

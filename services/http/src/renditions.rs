@@ -21,11 +21,9 @@ pub struct PictureRequest {
     pub layers: Option<Vec<&'static str>>,
     /// Wanted width in pixels; `None` is the frame's own.
     pub width_px: Option<u32>,
-    /// JPEG quality, 1..=100.
-    pub quality: u8,
+    /// Wanted JPEG quality, 1..=100; `None` is the picture's own where it is a JPEG, else the owner's choice.
+    pub quality: Option<u8>,
 }
-
-const DEFAULT_QUALITY: u8 = 80;
 
 /// Widths that may be asked for.
 const WIDTHS_PX: RangeInclusive<u32> = 16..=3840;
@@ -41,8 +39,8 @@ impl PictureRequest {
     pub fn asked(query: &mut Parameters, format: Format, layers: &[&'static str]) -> Result<Self, Problem> {
         let width_px = query.number("width", WIDTHS_PX)?;
         let quality = match format {
-            Format::Jpeg => query.number("quality", QUALITIES)?.unwrap_or(DEFAULT_QUALITY),
-            Format::Png => DEFAULT_QUALITY,
+            Format::Jpeg => query.number("quality", QUALITIES)?,
+            Format::Png => None,
         };
         let layers = if layers.is_empty() {
             None
@@ -50,6 +48,25 @@ impl PictureRequest {
             Some(query.choice("layers", layers)?.unwrap_or_else(|| layers.to_vec()))
         };
         Ok(Self { format, layers, width_px, quality })
+    }
+
+    /// As [`PictureRequest::asked`], with only those `layers` that are named; the quality of what has none is not used.
+    pub(crate) fn bare_unless_asked(
+        query: &mut Parameters,
+        format: Format,
+        layers: &[&'static str],
+    ) -> Result<Self, Problem> {
+        let names = if layers.is_empty() { None } else { query.choice("layers", layers)? };
+        let jpeg = Self::asked(query, Format::Jpeg, &[])?;
+        let quality = jpeg.quality.filter(|_| format == Format::Jpeg);
+        Ok(Self { format, layers: names, quality, ..jpeg })
+    }
+
+    /// Whether a JPEG as the camera sent it is what is asked for: whole, bare and of any quality.
+    #[must_use]
+    pub fn is_met_by_own_jpeg(&self) -> bool {
+        let is_bare = self.layers.as_ref().is_none_or(Vec::is_empty);
+        self.format == Format::Jpeg && is_bare && self.width_px.is_none() && self.quality.is_none()
     }
 
     /// Says of an operation that it takes `width` and, where there are any, `layers`.
@@ -90,10 +107,32 @@ impl Format {
             Self::Png => "image/png",
         }
     }
+
+    /// What a file's name ends with.
+    #[must_use]
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::Jpeg => "jpg",
+            Self::Png => "png",
+        }
+    }
 }
 
 /// Draws and encodes one view; runs on a thread that may block. The error is told to the viewer.
 pub type Render<T> = dyn Fn(&T, &PictureRequest) -> Result<Vec<u8>, String> + Send + Sync;
+
+/// Tells what was seen in a picture, as JSON; made at once, so it must be cheap.
+pub type Tell<T> = dyn Fn(&T) -> serde_json::Result<String> + Send + Sync;
+
+/// How an owner shows its pictures.
+pub struct Depiction<T> {
+    /// Draws and encodes.
+    pub render: Arc<Render<T>>,
+    /// The picture as it came, where it is a JPEG: shown without being decoded when that is all that is asked for.
+    pub own_jpeg: fn(&T) -> Option<Bytes>,
+    /// What was seen in it, where something is looked for.
+    pub told: Option<Arc<Tell<T>>>,
+}
 
 /// Views kept of the newest picture; further ones are made but not kept.
 const MAX_KEPT: usize = 16;
@@ -112,17 +151,17 @@ struct Kept {
 
 /// Makes views of one camera's pictures.
 pub(crate) struct Renditions<T> {
-    render: Arc<Render<T>>,
+    depiction: Arc<Depiction<T>>,
     encodes: Arc<Semaphore>,
     encoded: AtomicU64,
     kept: Mutex<Kept>,
 }
 
 impl<T: Send + Sync + 'static> Renditions<T> {
-    /// Views made by `render`.
-    pub(crate) fn new(render: Arc<Render<T>>) -> Self {
+    /// Views made as `depiction` says.
+    pub(crate) fn new(depiction: Arc<Depiction<T>>) -> Self {
         let encodes = Arc::new(Semaphore::new(MAX_ENCODES));
-        Self { render, encodes, encoded: AtomicU64::new(0), kept: Mutex::default() }
+        Self { depiction, encodes, encoded: AtomicU64::new(0), kept: Mutex::default() }
     }
 
     /// Views encoded since the start.
@@ -130,7 +169,17 @@ impl<T: Send + Sync + 'static> Renditions<T> {
         self.encoded.load(Ordering::Relaxed)
     }
 
-    /// The view of this picture, made now unless another viewer had it made already.
+    /// What was seen in this picture, where something is looked for.
+    ///
+    /// # Errors
+    /// 500 when it has no JSON form.
+    pub(crate) fn told(&self, picture: &Picture<T>) -> Result<Option<String>, Problem> {
+        let told = self.depiction.told.as_ref().map(|told| told(&picture.source));
+        told.transpose().map_err(|error| Problem::internal(&error))
+    }
+
+    /// The view of this picture: as it came if that is what is asked for, else made now unless another viewer had it
+    /// made already.
     ///
     /// # Errors
     /// 500 when the picture cannot be drawn or encoded.
@@ -139,6 +188,11 @@ impl<T: Send + Sync + 'static> Renditions<T> {
         picture: &Picture<T>,
         request: &PictureRequest,
     ) -> Result<Bytes, Problem> {
+        if request.is_met_by_own_jpeg()
+            && let Some(jpeg) = (self.depiction.own_jpeg)(&picture.source)
+        {
+            return Ok(jpeg);
+        }
         let cell = self.cell(picture, request);
         cell.get_or_try_init(|| self.encode(Arc::clone(&picture.source), request.clone())).await.cloned()
     }
@@ -159,7 +213,7 @@ impl<T: Send + Sync + 'static> Renditions<T> {
         let failed = |detail: String| Problem::new(StatusCode::INTERNAL_SERVER_ERROR, detail);
         let permit =
             Arc::clone(&self.encodes).acquire_owned().await.map_err(|error| failed(error.to_string()))?;
-        let render = Arc::clone(&self.render);
+        let render = Arc::clone(&self.depiction.render);
         self.encoded.fetch_add(1, Ordering::Relaxed);
         let encoded = tokio::task::spawn_blocking(move || {
             let _permit = permit;
@@ -179,7 +233,14 @@ mod tests {
     use tokio::time::Instant;
 
     fn request(quality: u8) -> PictureRequest {
-        PictureRequest { format: Format::Jpeg, layers: None, width_px: None, quality }
+        PictureRequest { format: Format::Jpeg, layers: None, width_px: None, quality: Some(quality) }
+    }
+
+    fn drawn_by(
+        render: impl Fn(&u8, &PictureRequest) -> Result<Vec<u8>, String> + Send + Sync + 'static,
+    ) -> Renditions<u8> {
+        let own_jpeg = |_: &u8| Some(Bytes::from_static(b"own"));
+        Renditions::new(Arc::new(Depiction { render: Arc::new(render), own_jpeg, told: None }))
     }
 
     fn picture(sequence: u64) -> Picture<u8> {
@@ -188,8 +249,7 @@ mod tests {
 
     #[tokio::test]
     async fn many_viewers_cost_one_encode_and_none_cost_nothing() {
-        let draw = |source: &u8, request: &PictureRequest| Ok(vec![*source, request.quality]);
-        let views = Renditions::new(Arc::new(draw));
+        let views = drawn_by(|source, request| Ok(vec![*source, request.quality.unwrap()]));
         assert_eq!(views.encoded(), 0);
         let (picture, request) = (picture(1), request(80));
         let all = futures_util::future::join_all((0..50).map(|_| views.view(&picture, &request))).await;
@@ -199,7 +259,7 @@ mod tests {
 
     #[tokio::test]
     async fn other_parameters_and_other_pictures_are_made_anew_and_memory_is_bounded() {
-        let views = Renditions::new(Arc::new(|_: &u8, request: &PictureRequest| Ok(vec![request.quality])));
+        let views = drawn_by(|_, request| Ok(vec![request.quality.unwrap()]));
         for quality in 1..=100 {
             assert_eq!(views.view(&picture(1), &request(quality)).await.unwrap().as_ref(), [quality]);
         }
@@ -209,8 +269,25 @@ mod tests {
     }
 
     #[tokio::test]
+    async fn a_jpeg_is_shown_as_it_came_unless_something_else_is_asked_for() {
+        let views = drawn_by(|_, _| Ok(b"made".to_vec()));
+        let whole = PictureRequest { quality: None, ..request(80) };
+        let with = |layers| PictureRequest { layers: Some(layers), ..whole.clone() };
+        for as_it_came in [whole.clone(), with(Vec::new())] {
+            assert_eq!(views.view(&picture(1), &as_it_came).await.unwrap(), "own");
+        }
+        assert_eq!(views.encoded(), 0);
+        let exact = PictureRequest { format: Format::Png, ..whole.clone() };
+        let smaller = PictureRequest { width_px: Some(64), ..whole.clone() };
+        for other in [request(80), exact, smaller, with(vec!["mask"])] {
+            assert_eq!(views.view(&picture(1), &other).await.unwrap(), "made");
+        }
+        assert_eq!(views.encoded(), 4);
+    }
+
+    #[tokio::test]
     async fn a_picture_that_cannot_be_drawn_is_a_problem() {
-        let views = Renditions::new(Arc::new(|_: &u8, _: &PictureRequest| Err("no decoder".to_owned())));
+        let views = drawn_by(|_, _| Err("no decoder".to_owned()));
         let problem = views.view(&picture(1), &request(80)).await.unwrap_err();
         assert_eq!(problem.status(), 500);
         assert!(problem.to_string().contains("no decoder"));

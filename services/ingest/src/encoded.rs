@@ -43,4 +43,29 @@ impl EncodedFrame {
     pub fn rests_on_earlier(&self) -> bool {
         self.encoding == Encoding::H264 && !video::stream::is_keyframe(&self.bytes)
     }
+
+    /// The picture as it came, where it is a JPEG by its first bytes (ITU-T T.81 B.1.1.3: start of image, then a marker).
+    #[must_use]
+    pub fn own_jpeg(&self) -> Option<Bytes> {
+        let is_jpeg = self.encoding == Encoding::File && self.bytes.starts_with(&[0xFF, 0xD8, 0xFF]);
+        is_jpeg.then(|| self.bytes.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_jpeg_file_is_one() {
+        let told = |encoding, bytes: &'static [u8]| {
+            let bytes = Bytes::from_static(bytes);
+            EncodedFrame { sequence: 0, captured_at: Timestamp::from_nanos(0), encoding, bytes }.own_jpeg()
+        };
+        let jpeg: &[u8] = &[0xFF, 0xD8, 0xFF, 0xE0, 0, 2, 0xFF, 0xD9];
+        assert_eq!(told(Encoding::File, jpeg).as_deref(), Some(jpeg));
+        assert_eq!(told(Encoding::File, b"\x89PNG\r\n"), None);
+        let raw = Encoding::Raw { width: 1, height: 1, step: 8, order: "mono8".to_owned() };
+        assert_eq!(told(raw, jpeg), None);
+    }
 }

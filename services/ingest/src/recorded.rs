@@ -183,11 +183,7 @@ impl RecordedItems {
             v1::Registration::SCHEMA => {
                 let wire: v1::Registration = decoded(topic, &message.data)?;
                 let (_, outcome) = registration_from_wire(&wire).map_err(field)?;
-                let place = |entry: &v1::LandmarkResult| Place {
-                    bearing_rad: entry.bearing_rad,
-                    range_m: entry.range_m,
-                };
-                let places = wire.landmarks.iter().map(place).collect();
+                let places = places_in(&wire);
                 Ok(Some(RecordedItem::Registration { camera: camera_of(topic), outcome, places }))
             }
             _ => Ok(None),
@@ -228,6 +224,13 @@ impl Iterator for RecordedItems {
 
 fn decoded<M: WireMessage>(topic: &str, data: &[u8]) -> Result<M, Damage> {
     M::from_payload(data).map_err(|source| Damage::Message { topic: topic.to_owned(), source })
+}
+
+/// Where the landmarks of a registration were said to be, in its order.
+#[must_use]
+pub fn places_in(wire: &v1::Registration) -> Vec<Place> {
+    let place = |entry: &v1::LandmarkResult| Place { bearing_rad: entry.bearing_rad, range_m: entry.range_m };
+    wire.landmarks.iter().map(place).collect()
 }
 
 /// The camera that a topic belongs to: the id in `/{vehicle}/camera/{id}/…`, or a foreign recording's whole topic.

@@ -6,6 +6,9 @@ use http_face::{Format, PictureRequest};
 use vision::Frame;
 use vision::frame::encode::{self, Quality};
 
+/// JPEG quality where none is asked for.
+const DEFAULT_QUALITY: u8 = 80;
+
 /// The frame at the width, in the format and with the quality asked for; layers are for its owner to have drawn.
 ///
 /// # Errors
@@ -15,7 +18,8 @@ pub fn encoded(frame: Frame, request: &PictureRequest) -> Result<Vec<u8>, String
         Some(width_px) if width_px < frame.width() => scaled_to_width(&frame, width_px)?,
         _ => frame,
     };
-    let quality = Quality::new(request.quality).map_err(|error| error.to_string())?;
+    let quality =
+        Quality::new(request.quality.unwrap_or(DEFAULT_QUALITY)).map_err(|error| error.to_string())?;
     match request.format {
         Format::Jpeg => encode::encode_jpeg(&frame, quality),
         Format::Png => encode::encode_png(&frame),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::thread::JoinHandle;
 
-use http_face::{Cameras, Picture, Render};
+use http_face::{Cameras, Depiction, Picture, PictureRequest};
 use ingest::camera_thread;
 use ingest::encoded::EncodedFrame;
 use ingest::mailbox::Mailbox;
@@ -29,10 +29,14 @@ pub(crate) struct CameraWatch {
 
 /// The pictures of these cameras, none of which has sent one yet.
 pub(crate) fn cameras(ids: &[String]) -> Arc<Cameras<EncodedFrame>> {
-    let render: Arc<Render<EncodedFrame>> = Arc::new(|picture, request| {
-        view::encoded(camera_thread::decode(picture).map_err(|error| error.to_string())?, request)
-    });
-    Arc::new(Cameras::new(ids.iter().cloned(), &[], &render))
+    let depiction = Depiction {
+        render: Arc::new(|picture: &EncodedFrame, request: &PictureRequest| {
+            view::encoded(camera_thread::decode(picture).map_err(|error| error.to_string())?, request)
+        }),
+        own_jpeg: EncodedFrame::own_jpeg,
+        told: None,
+    };
+    Arc::new(Cameras::new(ids.iter().cloned(), &[], depiction))
 }
 
 impl CameraWatch {

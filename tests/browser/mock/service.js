@@ -7,6 +7,7 @@ import { readFile, readdir } from "node:fs/promises";
 import { createServer } from "node:http";
 import { extname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { bitmapOf } from "./bitmap.js";
 import { makeWorld } from "./world.js";
 
 const WEB = resolve(fileURLToPath(import.meta.url), "../../../../web");
@@ -36,14 +37,20 @@ export async function startService(state, port, framesDir) {
   };
   const picture = (response) => {
     const refusal = world.refusal();
-    if (refusal || frames.length === 0) return json(response, { status: 503, detail: refusal ?? "no picture has arrived yet" }, 503);
+    if (refusal) return json(response, { status: 503, detail: refusal }, 503);
+    const seen = world.seen();
+    const file = frames.length > 0 ? frames[world.sequence % frames.length] : bitmapOf(seen);
+    const part = (name, type) => `--between\r\ncontent-disposition: form-data; name="${name}"\r\ncontent-type: ${type}\r\n\r\n`;
     response.writeHead(200, {
-      "content-type": "image/jpeg",
+      "content-type": "multipart/form-data; boundary=between",
       "x-waymark-sequence": world.sequence,
       "x-waymark-captured-at": String(Date.now() * 1e6),
       "x-waymark-age-ms": 12,
     });
-    response.end(frames[world.sequence % frames.length]);
+    if (state !== "leader") response.write(`${part("seen", "application/json")}${JSON.stringify(seen)}\r\n`);
+    response.write(part('picture"; filename="frame', frames.length > 0 ? "image/jpeg" : "image/bmp"));
+    response.write(file);
+    response.end("\r\n--between--\r\n");
   };
   const routes = {
     "/api/v1/status": (response) => json(response, world.status()),
@@ -54,7 +61,7 @@ export async function startService(state, port, framesDir) {
       response.end("export default null;");
     },
     "/api/v1/landmarks": (response) => json(response, world.landmarks()),
-    "/api/v1/cameras": (response) => json(response, { cameras: ["front"], layers: ["outline", "segments", "vector", "prediction", "gate", "mask", "labels"] }),
+    "/api/v1/cameras": (response) => json(response, { cameras: ["front"], layers: state === "leader" ? [] : ["outline", "segments", "vector", "prediction", "gate", "mask", "labels"] }),
     "/api/v1/events": (response) => {
       response.writeHead(200, { "content-type": "text/event-stream" });
       response.write("retry: 2000\n\n");
@@ -64,7 +71,7 @@ export async function startService(state, port, framesDir) {
   };
   const server = createServer(async (request, response) => {
     const { pathname } = new URL(request.url ?? "/", "http://localhost");
-    if (/\/overlay\.(jpg|png)$/.test(pathname)) {
+    if (pathname.endsWith("/seen")) {
       if (world.refusal()) setTimeout(() => picture(response), 500);
       else waiting.add(() => picture(response));
     } else if (routes[pathname]) routes[pathname](response);

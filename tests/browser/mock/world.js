@@ -2,6 +2,11 @@
 
 export const STATES = ["well", "no-camera", "stale", "no-landmark", "one-lost", "recording-failed", "thirty", "read-only", "leader-gone", "leader"];
 
+/** Size of the pictures that are made up here. */
+const FRAME_PX = [640, 480];
+/** Half a block's side, px. */
+const HALF_PX = 22;
+
 const RED = { mean: [181, 52, 47], variance: [310, 95, 88] };
 const BLUE = { mean: [44, 71, 158], variance: [70, 102, 240] };
 
@@ -31,15 +36,30 @@ export function makeWorld(state) {
 
   const measured = (/** @type {any} */ one, /** @type {number} */ index) => ({
     id: one.id, instance: 0, result: "measured",
-    x_px: 320 + 120 * Math.sin(sequence / 60 + index), y_px: 260 + noise(2), area_px2: 1840 + 300 * Math.sin(sequence / 90) + noise(20),
+    ...placeOf(index), area_px2: 1840 + 300 * Math.sin(sequence / 90) + noise(20),
     bearing_rad: 0.21 - 0.3 * index, range_m: 4.2 + index, score: 0.91 + noise(0.04), shape_score: 0.84 + noise(0.05), innovation_px: Math.abs(noise(3)), gain: 0.96 + 0.08 * Math.sin(sequence / 100),
-    predicted_x_px: 320, predicted_y_px: 260,
+    predicted_x_px: placeOf(index).x_px + 2, predicted_y_px: placeOf(index).y_px - 1,
     observed: {
       mean: one.shades[0].mean.map((/** @type {number} */ value) => value + noise(20)),
       variance: one.shades[0].variance.map((/** @type {number} */ value) => value + noise(60)),
     },
     miss: null,
   });
+  /** Far enough from frame to frame that a drawing of the wrong frame shows. @param {number} index */
+  const placeOf = (index) => state === "thirty"
+    ? { x_px: 60 + 100 * (index % 6) + 20 * Math.sin(sequence / 20), y_px: 50 + 90 * Math.floor(index / 6) }
+    : { x_px: 60 + ((sequence * 37 + index * 260) % 520), y_px: 200 + 90 * index };
+  const geometryOf = (/** @type {any} */ entry) => {
+    const { x_px: x, y_px: y } = entry;
+    const corners = [[x - HALF_PX, y - HALF_PX], [x + HALF_PX, y - HALF_PX], [x + HALF_PX, y + HALF_PX], [x - HALF_PX, y + HALF_PX]];
+    const isMeasured = entry.result === "measured";
+    return {
+      ...entry, digest: "5d".repeat(32), predicted_area_px2: 1840,
+      gate: { x_px: entry.predicted_x_px, y_px: entry.predicted_y_px, radius_x_px: 60, radius_y_px: 45 },
+      outline_px: isMeasured ? corners : [],
+      segments_px: isMeasured ? [[...corners[0], ...corners[1]], [...corners[1], ...corners[2]]] : [],
+    };
+  };
   const missed = (/** @type {any} */ one, /** @type {string} */ reason, /** @type {object} */ figures) => ({
     id: one.id, instance: 0, result: reason, x_px: null, y_px: null, area_px2: null, score: null, shape_score: null,
     innovation_px: null, gain: null, predicted_x_px: 300, predicted_y_px: 250, observed: null, miss: { reason, ...figures },
@@ -52,6 +72,7 @@ export function makeWorld(state) {
   });
 
   return {
+    seen: () => ({ sequence, captured_at_ns: Date.now() * 1e6, set: { epoch: 3, version: 7 }, frame_px: FRAME_PX, landmarks: results().map(geometryOf) }),
     get sequence() { return sequence; },
     tick() {
       if (state === "no-camera" || (state === "stale" && sequence > 60)) return false;

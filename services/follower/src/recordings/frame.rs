@@ -1,5 +1,6 @@
 //! One recorded picture with what was seen in it.
 
+use bytes::Bytes;
 use ingest::camera_decoder::{CameraDecoder, Undecoded};
 use ingest::encoded::{EncodedFrame, Encoding};
 use ingest::picture_message::{NoPicture, PictureKind};
@@ -7,11 +8,11 @@ use recording::RecordingError;
 use recording::excerpt::{Excerpt, Selection};
 use recording::timeline::Timeline;
 use recording::walk::RecordedMessage;
-use vision::{Frame, Outcome, Timestamp};
+use vision::{Frame, Timestamp};
 
 use super::Found;
-use super::registrations::outcome_of;
-use super::timelines::CameraTopics;
+use super::registrations::{Recorded, recorded_in};
+use super::topics::CameraTopics;
 
 /// A registration is recorded after its picture, and not much later.
 const REGISTERED_WITHIN_NS: u64 = 2_000_000_000;
@@ -24,7 +25,7 @@ pub(super) struct RecordedFrame {
     pub(super) sequence: u64,
     pub(super) captured_at: Timestamp,
     /// What was seen in it live; absent where it was not registered.
-    pub(super) outcome: Option<Outcome>,
+    pub(super) recorded: Option<Recorded>,
     picture: EncodedFrame,
     place: usize,
 }
@@ -62,9 +63,14 @@ impl RecordedFrame {
             messages.next().ok_or(NotShown::Beyond { frames: timeline.of(&topics.image).len() })??;
         let picture = picture_of(&message)?;
         let captured_at = picture.captured_at;
-        let outcome = outcome_for(found, topics, &message, captured_at)?;
-        let sequence = outcome.as_ref().map_or(picture.sequence, |outcome| outcome.sequence);
-        Ok(Self { sequence, captured_at, outcome, picture, place: n })
+        let recorded = recorded_of(found, topics, &message, captured_at)?;
+        let sequence = recorded.as_ref().map_or(picture.sequence, |recorded| recorded.outcome.sequence);
+        Ok(Self { sequence, captured_at, recorded, picture, place: n })
+    }
+
+    /// The picture as it was recorded, where it is a JPEG.
+    pub(super) fn own_jpeg(&self) -> Option<Bytes> {
+        self.picture.own_jpeg()
     }
 
     /// Its pixels; of a film the pictures before it are decoded too.
@@ -102,22 +108,22 @@ fn picture_of(message: &RecordedMessage) -> Result<EncodedFrame, NotShown> {
 }
 
 /// What was said live of the picture in `message`.
-fn outcome_for(
+fn recorded_of(
     found: &Found,
     topics: &CameraTopics,
     message: &RecordedMessage,
     captured_at: Timestamp,
-) -> Result<Option<Outcome>, RecordingError> {
+) -> Result<Option<Recorded>, RecordingError> {
     let from_ns = message.log_time_ns;
     let log_time_ns = from_ns..from_ns.saturating_add(REGISTERED_WITHIN_NS);
     let selection = Selection { topics: Some([topics.registration.clone()].into()), log_time_ns };
     for registration in Excerpt::open(&found.path, selection)? {
-        let outcome = outcome_of(&registration?);
-        let is_of_it = |outcome: &Outcome| {
+        let recorded = recorded_in(&registration?);
+        let is_of_it = |Recorded { outcome, .. }: &Recorded| {
             outcome.captured_at == captured_at && outcome.sequence as u32 == message.sequence
         };
-        if let Some(outcome) = outcome.filter(is_of_it) {
-            return Ok(Some(outcome));
+        if let Some(recorded) = recorded.filter(is_of_it) {
+            return Ok(Some(recorded));
         }
     }
     Ok(None)
@@ -136,7 +142,7 @@ mod tests {
         let recorded = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../recordings/reference").join(drive);
         let name = "car-20240301T000000Z-0001.mcap";
         std::fs::copy(recorded, place.join(name)).unwrap();
-        let shelf = Shelf::new(place, tokio::sync::watch::channel(Default::default()).1);
+        let shelf = Shelf::new(place);
         let found = shelf.find(name).unwrap().unwrap();
         (shelf, found)
     }
@@ -155,17 +161,22 @@ mod tests {
             from = page.next.map(|next| next.parse().unwrap());
         }
         assert_eq!(paged.len(), timeline.of(&topics.registration).len());
+        let landmarks = shelf.landmarks(&found).unwrap();
         let mut registered = 0;
         for n in (0..frames).step_by(5) {
             let frame = RecordedFrame::read(&found, &timeline, &topics, n).unwrap();
-            if let Some(outcome) = &frame.outcome {
+            if let Some(Recorded { outcome, places }) = &frame.recorded {
                 registered += 1;
+                let is_known = |digest| landmarks.iter().any(|landmark| landmark.digest == digest);
+                assert!(outcome.landmarks.iter().all(|one| is_known(one.digest)));
+                assert_eq!(places.len(), outcome.landmarks.len());
                 assert_eq!(outcome.captured_at, frame.captured_at);
                 assert!(paged.iter().any(|one| one.captured_at_ns == frame.captured_at.nanos));
             }
         }
         assert!(registered * 5 >= frames / 2, "{registered} of every fifth of {frames}");
         let first = RecordedFrame::read(&found, &timeline, &topics, 0).unwrap();
+        assert_eq!(first.own_jpeg().as_deref(), Some(&first.picture.bytes[..]));
         assert!(first.decode(&found, &timeline, &topics).unwrap().width() > 0);
         let beyond = RecordedFrame::read(&found, &timeline, &topics, frames);
         assert!(matches!(beyond, Err(NotShown::Beyond { .. })));

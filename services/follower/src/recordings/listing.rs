@@ -6,7 +6,7 @@ use recording::summary::Summary;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::timelines::cameras;
+use super::topics::cameras;
 use super::{Found, Shelf};
 
 /// Recordings, newest first.

@@ -1,11 +1,12 @@
 //! What was seen, page by page.
 
+use ingest::recorded::places_in;
 use recording::RecordingError;
 use recording::timeline::Timeline;
 use recording::walk::RecordedMessage;
 use schemars::JsonSchema;
 use serde::Serialize;
-use vision::Outcome;
+use vision::{Outcome, Place};
 use waymark_proto::convert::registration_from_wire;
 use waymark_proto::payload::WireMessage;
 use waymark_proto::v1;
@@ -37,14 +38,22 @@ pub(super) struct RegistrationEntry {
     pub(super) landmarks: Vec<LandmarkStatus>,
 }
 
-impl From<&Outcome> for RegistrationEntry {
-    fn from(outcome: &Outcome) -> Self {
+impl From<&Recorded> for RegistrationEntry {
+    fn from(Recorded { outcome, places }: &Recorded) -> Self {
         Self {
             sequence: outcome.sequence,
             captured_at_ns: outcome.captured_at.nanos,
-            landmarks: landmarks_from_outcome(outcome, &[]),
+            landmarks: landmarks_from_outcome(outcome, places),
         }
     }
+}
+
+/// What was said live of one frame.
+#[derive(Debug)]
+pub(super) struct Recorded {
+    pub(super) outcome: Outcome,
+    /// Where the landmarks were, in the order of the outcome.
+    pub(super) places: Vec<Place>,
 }
 
 /// Registrations of `topic` from place `from` on. One that cannot be read is left out: it says nothing.
@@ -60,14 +69,15 @@ pub(super) fn page(
     let end = from.saturating_add(limit);
     let mut registrations = Vec::new();
     for message in timeline.messages(&found.path, topic, from..end)? {
-        registrations.extend(outcome_of(&message?).as_ref().map(RegistrationEntry::from));
+        registrations.extend(recorded_in(&message?).as_ref().map(RegistrationEntry::from));
     }
     let next = (end < total).then(|| end.to_string());
     Ok(Registrations { camera, total, registrations, next })
 }
 
-/// The outcome in a message.
-pub(super) fn outcome_of(message: &RecordedMessage) -> Option<Outcome> {
+/// What a message says.
+pub(super) fn recorded_in(message: &RecordedMessage) -> Option<Recorded> {
     let wire = v1::Registration::from_payload(&message.data).ok()?;
-    registration_from_wire(&wire).ok().map(|(_, outcome)| outcome)
+    let (_, outcome) = registration_from_wire(&wire).ok()?;
+    Some(Recorded { outcome, places: places_in(&wire) })
 }

@@ -11,16 +11,18 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use axum::{Extension, Json};
 use http_face::{Api, ForViewers, Format, Parameters, PictureRequest, Problem, ServedFile, serve_file};
-use recording::FileName;
 use recording::timeline::Timeline;
+use recording::{FileName, RecordingError};
 use tokio::sync::Semaphore;
+use vision::Landmark;
 
 use super::frame::{NotShown, RecordedFrame};
+use super::landmarks::{self, RecordedLandmarks};
 use super::registrations::{Registrations, page};
-use super::timelines::{CameraTopics, cameras};
+use super::topics::{CameraTopics, cameras};
 use super::{Found, Shelf};
 use crate::pictures_out::LAYERS;
-use answers::{shown, told};
+use answers::{picture, shown, told};
 use description::{DEFAULT_PAGE, PAGE, QUERY_PLACES};
 
 /// Recordings read at once, so that viewers cannot take the disk and the cores from recorder and registration.
@@ -45,6 +47,11 @@ pub(crate) fn routes(api: Api, shelf: Shelf) -> Api {
             "/api/v1/recordings/{name}/frames/{frame}",
             [description::frame()],
             get(frame).with_state(shared()),
+        )
+        .route(
+            "/api/v1/recordings/{name}/landmarks",
+            [description::landmarks()],
+            get(landmarks_of).with_state(shared()),
         )
         .route(
             "/api/v1/recordings/{name}/registrations",
@@ -74,13 +81,44 @@ impl Shelf {
         found.ok_or_else(|| Problem::not_found(&format!("recording {name:?}")))
     }
 
+    fn timeline(&self, found: &Found) -> Result<Arc<Timeline>, RecordingError> {
+        self.timelines.of(found, || Timeline::read(&found.path))
+    }
+
+    /// The landmarks that it was made with.
+    pub(super) fn landmarks(&self, found: &Found) -> Result<Arc<Vec<Arc<Landmark>>>, Problem> {
+        let read = || landmarks::landmarks(found, &*self.timeline(found)?);
+        self.landmarks.of(found, read).map_err(|error| unreadable(&error))
+    }
+
+    /// Picture `n` as it is asked for, or else what was seen in it.
+    fn frame(
+        &self,
+        name: &str,
+        camera: Option<&str>,
+        n: usize,
+        request: Option<&PictureRequest>,
+    ) -> Result<Response, Problem> {
+        let found = self.named(name)?;
+        let (timeline, topics) = self.camera(&found, camera)?;
+        let frame = RecordedFrame::read(&found, &timeline, &topics, n).map_err(|error| not_shown(&error))?;
+        let Some(request) = request else { return Ok(told(&frame, n, timeline.of(&topics.image))) };
+        if request.is_met_by_own_jpeg()
+            && let Some(jpeg) = frame.own_jpeg()
+        {
+            return Ok(picture(&frame, Format::Jpeg, jpeg));
+        }
+        let pixels = frame.decode(&found, &timeline, &topics).map_err(|error| not_shown(&error))?;
+        shown(&frame, pixels, request, &self.landmarks(&found)?)
+    }
+
     /// The camera asked for, or the only one.
     pub(super) fn camera(
         &self,
         found: &Found,
         asked: Option<&str>,
     ) -> Result<(Arc<Timeline>, CameraTopics), Problem> {
-        let timeline = self.timelines.of(found).map_err(|error| unreadable(&error))?;
+        let timeline = self.timeline(found).map_err(|error| unreadable(&error))?;
         let mut all = cameras(timeline.topics());
         let chosen = match asked {
             Some(id) => all.iter().position(|topics| topics.camera == id),
@@ -160,29 +198,21 @@ async fn frame(
     Path((name, file)): Path<(String, String)>,
     RawQuery(query): RawQuery,
 ) -> Result<Response, Problem> {
-    let no_frame = || Problem::not_found(&format!("frame {file:?}; ask for 0.jpg or 0.json"));
+    let no_frame = || Problem::not_found(&format!("frame {file:?}; ask for 0.jpg, 0.png or 0.json"));
     let (n, kind) = file.split_once('.').ok_or_else(no_frame)?;
-    let is_picture = match kind {
-        "jpg" => true,
-        "json" => false,
+    let format = match kind {
+        "jpg" => Some(Format::Jpeg),
+        "png" => Some(Format::Png),
+        "json" => None,
         _ => return Err(no_frame()),
     };
     let n: usize = n.parse().map_err(|_| no_frame())?;
     let mut query = Parameters::parse(query.as_deref())?;
     let camera = query.text("camera");
     let request = PictureRequest::asked(&mut query, Format::Jpeg, LAYERS)?;
+    let request = format.map(|format| PictureRequest { format, ..request });
     query.finish()?;
-    let answered = reading.read(move |shelf| {
-        let found = shelf.named(&name)?;
-        let (timeline, topics) = shelf.camera(&found, camera.as_deref())?;
-        let frame = RecordedFrame::read(&found, &timeline, &topics, n).map_err(|error| not_shown(&error))?;
-        if !is_picture {
-            return Ok(told(&frame, n, timeline.of(&topics.image)));
-        }
-        let pixels = frame.decode(&found, &timeline, &topics).map_err(|error| not_shown(&error))?;
-        shown(&frame, pixels, &request, &shelf.landmarks)
-    });
-    answered.await
+    reading.read(move |shelf| shelf.frame(&name, camera.as_deref(), n, request.as_ref())).await
 }
 
 fn not_shown(error: &NotShown) -> Problem {
@@ -190,6 +220,14 @@ fn not_shown(error: &NotShown) -> Problem {
         NotShown::Beyond { .. } => Problem::new(StatusCode::NOT_FOUND, error.to_string()),
         _ => unreadable(error),
     }
+}
+
+async fn landmarks_of(
+    State(reading): Shared,
+    Path(name): Path<String>,
+) -> Result<Json<RecordedLandmarks>, Problem> {
+    let read = reading.read(move |shelf| Ok(RecordedLandmarks::of(&shelf.landmarks(&shelf.named(&name)?)?)));
+    read.await.map(Json)
 }
 
 async fn registrations(

@@ -72,8 +72,8 @@ async fn explained(
     let mode = face.search;
     let work = tokio::task::spawn_blocking(move || {
         let _permit = permit;
-        let frame =
-            camera_thread::decode(&newest.source.picture).map_err(|error| Problem::internal(&error))?;
+        let frame = camera_thread::decode(&newest.source.registered.picture)
+            .map_err(|error| Problem::internal(&error))?;
         Ok(Json(entry(newest.sequence, &explain(&frame, &landmark, mode))))
     });
     work.await.map_err(|error| Problem::internal(&error))?

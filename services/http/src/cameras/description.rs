@@ -22,6 +22,27 @@ pub(super) fn jpeg(summary: &'static str, layers: &'static [&'static str]) -> Op
     PictureRequest::described(single(summary).binary("image/jpeg"), layers).with_quality()
 }
 
+/// A single picture and what was seen in it.
+pub(super) fn seen(layers: &'static [&'static str]) -> Operation {
+    let formats = json!({ "type": "string", "enum": ["jpg", "png"] });
+    let parts = json!({
+        "type": "object",
+        "properties": {
+            "seen": { "type": "object", "description": "What was seen in it, as a recorded frame's registration" },
+            "picture": { "type": "string", "format": "binary", "description": "The frame, bare unless layers are named" },
+        },
+        "required": ["picture"],
+    });
+    let operation = single("The newest frame and what was seen in it, in one answer")
+        .query(
+            "format",
+            "The picture's: jpg, as the camera sent it where nothing else is asked, or png without loss",
+            formats,
+        )
+        .answers("multipart/form-data", parts);
+    PictureRequest::described(operation, layers).with_quality()
+}
+
 /// A single PNG.
 pub(super) fn png(summary: &'static str, layers: &'static [&'static str]) -> Operation {
     PictureRequest::described(single(summary).binary("image/png"), layers)

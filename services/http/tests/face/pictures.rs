@@ -13,9 +13,51 @@ async fn a_picture_says_which_frame_it_shows() {
     assert!(answer.contains("x-waymark-sequence: 7\r\n"), "{answer}");
     assert!(answer.contains("x-waymark-captured-at: 1000\r\n"), "{answer}");
     assert!(answer.contains("x-waymark-age-ms: "), "{answer}");
-    assert!(answer.ends_with("Some([\"gate\"]) Some(320) 50 xxx"), "{answer}");
-    assert!(server.get("/api/v1/cameras/front/frame.jpg").await.ends_with("None None 80 xxx"));
+    assert!(answer.ends_with("Some([\"gate\"]) Some(320) Some(50) xxx"), "{answer}");
+    assert!(server.get("/api/v1/cameras/front/frame.jpg").await.ends_with("None None None xxx"));
     assert!(server.get("/api/v1/cameras/front/overlay.png").await.contains("content-type: image/png"));
+}
+
+#[tokio::test]
+async fn a_jpeg_is_passed_on_as_it_came_to_all_who_ask_for_no_more() {
+    let server = Server::start(Policy::default()).await;
+    server.publish_source(7, b"JPEG".to_vec());
+    let at = "/api/v1/cameras/front";
+    assert!(server.get(&format!("{at}/frame.jpg")).await.ends_with("\r\n\r\nJPEG"));
+    assert!(server.get(&format!("{at}/overlay.jpg?layers=")).await.ends_with("\r\n\r\nJPEG"));
+    assert!(server.get(&format!("{at}/seen")).await.contains("\r\n\r\nJPEG\r\n--"));
+    assert_eq!(server.cameras.encoded().collect::<Vec<_>>(), [("front", 0)]);
+    for made in
+        ["frame.jpg?quality=80", "frame.jpg?width=320", "overlay.jpg", "seen?layers=gate", "seen?format=png"]
+    {
+        assert!(server.get(&format!("{at}/{made}")).await.contains(" JPEG"), "{made}");
+    }
+    assert_eq!(server.cameras.encoded().collect::<Vec<_>>(), [("front", 5)]);
+}
+
+/// However fast pictures follow each other, what is told with one is told of it.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn picture_and_what_was_seen_in_it_are_of_the_same_frame() {
+    let server = std::sync::Arc::new(Server::start(Policy::default()).await);
+    server.publish_source(1, b"J".to_vec());
+    let feeding = tokio::spawn({
+        let server = std::sync::Arc::clone(&server);
+        async move {
+            for sequence in (2..=200).cycle() {
+                server.publish_source(sequence, vec![b'J'; sequence as usize]);
+                tokio::task::yield_now().await;
+            }
+        }
+    });
+    let mut seen = 0;
+    for _ in 0..200 {
+        let answer = server.get(&format!("/api/v1/cameras/front/seen?after={seen}")).await;
+        let field = |name: &str| answer.lines().find_map(|line| line.strip_prefix(name)).unwrap().to_owned();
+        seen = field("x-waymark-sequence: ").parse().unwrap();
+        assert!(answer.contains(&format!("{{\"bytes\":{seen}}}")), "{answer}");
+        assert!(answer.contains(&format!("\r\n\r\n{}\r\n--", "J".repeat(seen))), "{answer}");
+    }
+    feeding.abort();
 }
 
 #[tokio::test]
@@ -48,6 +90,9 @@ async fn unknown_and_out_of_range_values_are_named() {
         ("overlay.png?quality=50", "quality"),
         ("frame.jpg?layers=gate", "layers"),
         ("frame.jpg?after=-1", "after"),
+        ("seen?format=bmp", "format"),
+        ("seen?layers=halo", "layers"),
+        ("seen?format=png&quality=0", "quality"),
         ("stream.mjpeg?fps=0", "fps"),
         ("stream.mjpeg?overlay=maybe", "overlay"),
     ];
@@ -70,7 +115,7 @@ async fn motion_jpeg_sends_each_new_picture_as_a_part() {
     let first = read_until(&mut stream, "xxx").await;
     assert!(first.contains("content-type: multipart/x-mixed-replace; boundary=waymark-frame"), "{first}");
     assert!(
-        first.contains("--waymark-frame\r\ncontent-type: image/jpeg\r\ncontent-length: 16\r\n"),
+        first.contains("--waymark-frame\r\ncontent-type: image/jpeg\r\ncontent-length: 18\r\n"),
         "{first}"
     );
     assert!(first.contains("x-waymark-sequence: 1\r\n"), "{first}");

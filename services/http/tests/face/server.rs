@@ -3,7 +3,7 @@
 use axum::routing::{get, post};
 use axum::{Extension, Router};
 use http_face::{
-    Access, Api, Cameras, Check, Counters, Events, Picture, PictureRequest, Policy, Render, ServeReport,
+    Access, Api, Cameras, Check, Counters, Depiction, Events, Picture, PictureRequest, Policy, ServeReport,
     health, page, serve,
 };
 use std::net::SocketAddr;
@@ -30,8 +30,15 @@ impl Server {
     pub(crate) async fn start(policy: Policy) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
-        let render: Arc<Render<Vec<u8>>> = Arc::new(|source, request| Ok(draw(source, request)));
-        let cameras = Arc::new(Cameras::new(["front".to_owned()], LAYERS, &render));
+        let depiction = Depiction {
+            render: Arc::new(|source: &Vec<u8>, request: &PictureRequest| Ok(draw(source, request))),
+            // A picture of capital letters is a JPEG here.
+            own_jpeg: |source| {
+                source.first().is_some_and(u8::is_ascii_uppercase).then(|| source.clone().into())
+            },
+            told: Some(Arc::new(|source: &Vec<u8>| Ok(format!("{{\"bytes\":{}}}", source.len())))),
+        };
+        let cameras = Arc::new(Cameras::new(["front".to_owned()], LAYERS, depiction));
         let events = Arc::new(Events::new(64));
         let changes = Arc::new(AtomicU32::new(0));
         let router = router(&cameras, &events, &changes);
@@ -59,7 +66,11 @@ impl Server {
     }
 
     pub(crate) fn publish(&self, sequence: u64, bytes: usize) {
-        let source = Arc::new(vec![b'x'; bytes]);
+        self.publish_source(sequence, vec![b'x'; bytes]);
+    }
+
+    pub(crate) fn publish_source(&self, sequence: u64, source: Vec<u8>) {
+        let source = Arc::new(source);
         let picture = Picture { sequence, captured_at_ns: 1_000, received_at: Instant::now(), source };
         self.cameras.feed("front").unwrap().publish(picture);
     }
@@ -95,7 +106,8 @@ fn router(cameras: &Arc<Cameras<Vec<u8>>>, events: &Arc<Events>, changes: &Arc<A
 
 /// "Draws" a picture: its source, the layers and the quality, so that a test sees what was asked for.
 fn draw(source: &[u8], request: &PictureRequest) -> Vec<u8> {
-    let mut bytes = format!("{:?} {:?} {} ", request.layers, request.width_px, request.quality).into_bytes();
+    let mut bytes =
+        format!("{:?} {:?} {:?} ", request.layers, request.width_px, request.quality).into_bytes();
     bytes.extend_from_slice(source);
     bytes
 }

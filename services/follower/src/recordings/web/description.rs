@@ -6,6 +6,7 @@ use http_face::{Operation, PictureRequest, integer};
 use serde_json::json;
 
 use crate::pictures_out::LAYERS;
+use crate::recordings::landmarks::RecordedLandmarks;
 use crate::recordings::listing::Recordings;
 use crate::recordings::registrations::Registrations;
 
@@ -57,13 +58,21 @@ fn of_camera(operation: Operation) -> Operation {
 }
 
 pub(super) fn frame() -> Operation {
-    let file = json!({ "type": "string", "pattern": "^[0-9]{1,9}\\.(jpg|json)$" });
-    let frame =
-        of_camera(Operation::get("Picture n of a camera as n.jpg, and what was seen in it live as n.json"))
-            .path("frame", "The picture's place, counted from 0, and what is wanted of it", file)
-            .binary("image/jpeg")
-            .gives::<FrameEntry>();
+    let file = json!({ "type": "string", "pattern": "^[0-9]{1,9}\\.(jpg|png|json)$" });
+    let frame = of_camera(Operation::get(
+        "Picture n of a camera as n.jpg or n.png, and what was seen in it live as n.json",
+    ))
+    .path("frame", "The picture's place, counted from 0, and what is wanted of it", file)
+    .binary("image/jpeg")
+    .binary("image/png")
+    .gives::<FrameEntry>();
     PictureRequest::described(frame, LAYERS).with_quality()
+}
+
+pub(super) fn landmarks() -> Operation {
+    named(Operation::get("The landmarks that it was made with, each by its digest"))
+        .gives::<RecordedLandmarks>()
+        .problem(422, "The file is damaged")
 }
 
 pub(super) fn registrations() -> Operation {
