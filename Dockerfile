@@ -21,8 +21,11 @@ FROM base AS prebuilt
 COPY Cargo.tom[l] waymar[k] /usr/local/bin/
 
 FROM rust:1.95-slim-bookworm AS build
-# zstd and ring are C and assembly, the H.264 codec C++ and assembly.
-RUN apt-get update && apt-get install -y --no-install-recommends gcc g++ libc6-dev make nasm && rm -rf /var/lib/apt/lists/*
+# zstd and ring are C and assembly, the H.264 codec C++ and assembly. npm brings uPlot, from which the page's plots have
+# their axes; it comes with Node, and the build does without both.
+RUN apt-get update \
+ && apt-get install -y --no-install-recommends gcc g++ libc6-dev make nasm npm \
+ && rm -rf /var/lib/apt/lists/*
 WORKDIR /source
 COPY . .
 # --target keeps the flag from build scripts and procedural macros, which cannot be static.
