@@ -35,8 +35,8 @@ const FURTHEST_PX = 1e5;
 const FULL_SIZE_PX = 640;
 const LEAST_SIZE = 0.65;
 
-/** Pictures narrower than this on the page have room for names only. */
-const ROOM_FOR_FIGURES_PX = 520;
+/** So many square pixels of the page for each label, or there is room for names only. */
+const ROOM_FOR_FIGURES_PX2 = 24_000;
 
 /** @param {CanvasRenderingContext2D} pen @param {Seen} seen @param {Set<string>} layers @param {Scale} scale */
 export function drawSeen(pen, seen, layers, scale) {
@@ -152,7 +152,8 @@ function drawLabels(pen, landmarks, inks, { perFramePx, perCssPx }) {
   const room = { w: width / perCssPx, h: height / perCssPx };
   pen.font = `${12.5 * perCssPx}px system-ui, "Noto Sans", "DejaVu Sans", sans-serif`;
   pen.textBaseline = "middle";
-  const words = landmarks.map((one) => labelOf(one, room.w >= ROOM_FOR_FIGURES_PX));
+  const isRoomy = room.w * room.h >= ROOM_FOR_FIGURES_PX2 * Math.max(landmarks.length, 6);
+  const words = landmarks.map((one) => labelOf(one, isRoomy));
   const wanted = landmarks.map((one, index) => ({
     about: extentOf(one, perFramePx / perCssPx, room), w: pen.measureText(words[index]).width / perCssPx + 8,
   }));

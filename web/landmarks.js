@@ -151,6 +151,8 @@ function fillRow(row, { landmark, entry, several }, ageMs) {
   const comparison = compare(landmark ?? UNKNOWN, entry.observed ?? entry.miss?.observed, entry.gain);
   const shade = comparison.shades > 1 ? ` · shade ${comparison.shade} of ${comparison.shades}` : "";
   setText(name.children[1], landmark ? `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}` : "another descriptor than is known here");
+  // What was, is not to be taken for what is.
+  row.classList.toggle("old", ageMs !== null && ageMs > STALE_AFTER_MS);
   showButton(result, entry);
   fillResult(/** @type {HTMLElement} */ (result.firstElementChild), entry, ageMs, landmark?.revision);
   comparison.mean.forEach((one, index) => fillStatistic(mean.children[0].children[index], one));

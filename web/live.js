@@ -6,7 +6,7 @@ import { lesson, lessonPath } from "./lesson.js";
 import { forgetPicture, showPicture, shownPicture } from "./picture.js";
 import { nextFrame, playback } from "./playback.js";
 import { STALE_AFTER_MS, known, shownEntry } from "./state.js";
-import { duration, figure } from "./words.js";
+import { duration, figure, sentence } from "./words.js";
 
 const keptCameras = new Map();
 
@@ -50,8 +50,8 @@ async function run(camera, stop) {
       if (held && !playback()) return;
     } catch (error) {
       if (stop.aborted) return;
-      if (error instanceof Problem) explain(error.message);
-      else explain("The service does not answer");
+      if (error instanceof Problem) explain(sentence(error.message));
+      else explain("The service does not answer.");
       await pause(500, stop);
     }
   }
@@ -133,7 +133,7 @@ export function showLive() {
   const shown = shownPicture();
   if (shown) {
     const ageMs = shown.ageMs + now - shown.at;
-    if (ageMs > STALE_AFTER_MS && !isStill()) explain(`Not live: this picture is ${duration(ageMs / 1000)} old`);
+    if (ageMs > STALE_AFTER_MS && !isStill()) explain(`Not live: this picture is ${duration(ageMs / 1000)} old.`);
     const rate = times.length > 1 ? ((times.length - 1) * 1000) / (times[times.length - 1] - times[0]) : null;
     const pace = playback() ? "recorded" : lesson() ? "taken to learn from" : held ? "held" : figure(rate, 0, "fps shown");
     const unseen = known.stillEntry?.registered === false ? " · was not registered" : "";

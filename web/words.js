@@ -18,6 +18,12 @@ export function duration(seconds) {
   return `${Math.round(seconds / 3600)} h`;
 }
 
+/** Words of a program as a sentence. @param {string} words */
+export function sentence(words) {
+  const whole = words.charAt(0).toUpperCase() + words.slice(1);
+  return /[.!?…]$/.test(whole) ? whole : `${whole}.`;
+}
+
 /** A place in a recording, as players show it. @param {number} seconds */
 export function clock(seconds) {
   const whole = Math.max(0, seconds);
