@@ -158,6 +158,7 @@ function drawLabels(pen, landmarks, inks, { perFramePx, perCssPx }) {
     about: extentOf(one, perFramePx / perCssPx, room), w: pen.measureText(words[index]).width / perCssPx + 8,
   }));
   placeLabels(wanted, room, 18).forEach((place, index) => {
+    if (!place) return;
     const [x, y, w, h] = [place.x, place.y, place.w, place.h].map((side) => side * perCssPx);
     pen.fillStyle = PLATE;
     pen.fillRect(x, y, w, h);

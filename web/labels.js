@@ -8,19 +8,20 @@ const GAP = 4;
 
 /**
  * Gives each label a place in the room: right, left, below or above of what it names, away from everything named, while
- * there is such a place; else further down.
+ * there is such a place; else further down. One for which there is no room at all has none: it would make two unreadable.
  * @param {Wanted[]} wanted @param {Size} room @param {number} height of each @param {number} [gap]
  */
 export function placeLabels(wanted, room, height, gap = GAP) {
   const named = wanted.flatMap(({ about }) => (about ? [about] : []));
   /** @type {Rect[]} */
   const placed = [];
-  for (const { about, w } of wanted) {
+  return wanted.map(({ about, w }) => {
     const size = { w, h: height };
     const free = about ? beside(about, size, room, gap).find((place) => isInside(place, room) && isFree(place, [...placed, ...named])) : null;
-    placed.push(free ?? movedDown(about ? within(about, size, room, gap) : { x: gap, y: gap, ...size }, placed, room, gap));
-  }
-  return placed;
+    const place = free ?? movedDown(about ? within(about, size, room, gap) : { x: gap, y: gap, ...size }, placed, room, gap);
+    if (place) placed.push(place);
+    return place;
+  });
 }
 
 /** @param {Rect} about @param {Size} size @param {Size} room @param {number} gap @returns {Rect[]} */
@@ -39,7 +40,7 @@ function within(about, { w, h }, room, gap) {
   return { x: clamp(about.x + about.w + gap, room.w - w), y: clamp(about.y, room.h - h), w, h };
 }
 
-/** Each label in the way moves it below itself; past the bottom it begins again at the top. @param {Rect} place @param {Rect[]} placed @param {Size} room @param {number} gap */
+/** Each label in the way moves it below itself; past the bottom it begins again at the top. @param {Rect} place @param {Rect[]} placed @param {Size} room @param {number} gap @returns {Rect | null} */
 function movedDown(place, placed, room, gap) {
   for (let tries = 0; tries <= placed.length; tries += 1) {
     const inTheWay = placed.find((other) => overlap(other, place));
@@ -47,7 +48,7 @@ function movedDown(place, placed, room, gap) {
     const y = inTheWay.y + inTheWay.h + gap / 4;
     place = { ...place, y: y + place.h > room.h ? gap : y };
   }
-  return place;
+  return null;
 }
 
 /** @param {Rect} place @param {Rect[]} others */

@@ -90,6 +90,14 @@ test("labels stay off each other and off what is named, and inside the room", as
   });
 });
 
+test("labels that find no room are left out rather than laid over others", async () => {
+  const wanted = Array.from({ length: 12 }, () => ({ about: { x: 20, y: 20, w: 10, h: 10 }, w: 90 }));
+  const placed = await call("/labels.js", "placeLabels", wanted, { w: 100, h: 60 }, 18);
+  const shown = placed.filter(Boolean);
+  assert.ok(shown.length >= 1 && shown.length < 12, `${shown.length} of 12`);
+  assert.equal(new Set(shown.map((/** @type {any} */ place) => place.y)).size, shown.length);
+});
+
 test("labels say what was measured or why not, as the service's own do", async () => {
   const seen = { id: "red", instance: 0, result: "measured", x_px: 458.46, y_px: 325.64, area_px2: 588.6, miss: null };
   assert.equal(await call("/drawing.js", "labelOf", seen, true), "red  x 458.5 y 325.6  589 px²");
