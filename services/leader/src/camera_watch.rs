@@ -27,8 +27,22 @@ pub(crate) struct CameraWatch {
     showing: JoinHandle<()>,
 }
 
+/// Begins to look through these cameras of a vehicle.
+pub(crate) async fn begin_all(
+    session: &Session,
+    keys: &VehicleKeys,
+    ids: &[String],
+) -> Result<(Arc<Cameras<EncodedFrame>>, Vec<CameraWatch>), LeaderError> {
+    let cameras = cameras(ids);
+    let mut watches = Vec::new();
+    for id in ids {
+        watches.push(CameraWatch::begin(session, keys, id, &cameras).await?);
+    }
+    Ok((cameras, watches))
+}
+
 /// The pictures of these cameras, none of which has sent one yet.
-pub(crate) fn cameras(ids: &[String]) -> Arc<Cameras<EncodedFrame>> {
+fn cameras(ids: &[String]) -> Arc<Cameras<EncodedFrame>> {
     let depiction = Depiction {
         render: Arc::new(|picture: &EncodedFrame, request: &PictureRequest| {
             view::encoded(camera_thread::decode(picture).map_err(|error| error.to_string())?, request)
@@ -41,7 +55,7 @@ pub(crate) fn cameras(ids: &[String]) -> Arc<Cameras<EncodedFrame>> {
 
 impl CameraWatch {
     /// Begins to look through camera `id` of this vehicle.
-    pub(crate) async fn begin(
+    async fn begin(
         session: &Session,
         keys: &VehicleKeys,
         id: &str,

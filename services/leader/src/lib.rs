@@ -1,8 +1,8 @@
 //! The landmark set, published to Zenoh with a manifest, and its web face.
 //!
 //! `book` decides what the set is, `memory` keeps it from one start to the next, `publication` turns it into
-//! messages, `answers` gives them to whoever asks and `announcements` to whoever listens; [`run()`] puts them
-//! together. [`client`] is the other side: what the command line says to a running leader. [`store`] remembers the sets of
+//! messages, `answers` gives them to whoever asks and `announcements` to whoever listens; all changes are made at one
+//! `desk`, and [`run()`] puts them together. [`client`] is the other side: what the command line says to a running leader. [`store`] remembers the sets of
 //! all leaders for a router.
 
 mod announcements;
@@ -11,7 +11,9 @@ pub mod book;
 mod camera_watch;
 pub mod client;
 pub mod config;
+mod desk;
 pub mod error;
+mod handle;
 pub mod landmark_files;
 mod lessons;
 mod memory;
@@ -26,5 +28,6 @@ mod web;
 pub use book::{Change, Edit, Others, RefusedEdit};
 pub use config::LeaderConfig;
 pub use error::LeaderError;
-pub use run::{EditError, Leader, LeaderHandle, LeaderReport, run};
+pub use handle::{EditError, LeaderHandle};
+pub use run::{Leader, LeaderReport, run};
 pub use status::EditCounts;

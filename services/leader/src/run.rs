@@ -2,28 +2,25 @@
 
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::time::Duration;
 
-use http_face::HttpSettings;
-use runtime::identity::unix_time_ns;
+use http_face::{HttpSettings, Policy};
 use runtime::presence::{Presence, PresencePlace};
 use runtime::{Identity, Shutdown, StateDir};
 use tokio::net::TcpListener;
-use tokio::sync::{Semaphore, mpsc, oneshot, watch};
+use tokio::sync::{Semaphore, mpsc, watch};
 use tokio::task::JoinHandle;
-use tokio::time::{MissedTickBehavior, interval};
-use vision::{LandmarkSet, SetVersion};
-use waymark_proto::convert::manifest_of;
+use vision::{Landmark, LandmarkSet};
 use waymark_proto::keys::{Id, InvalidId, PresenceKey, Role, VehicleKeys};
 use zenoh::Session;
-use zenoh::query::Query;
 
 use crate::announcements::Announcements;
-use crate::answers::{Answers, answer_edit, edit_of};
-use crate::book::{Book, Edit, RefusedEdit};
+use crate::answers::Answers;
+use crate::book::{Book, Edit};
 use crate::camera_watch::{self, CameraWatch};
 use crate::config::LeaderConfig;
+use crate::desk::Desk;
 use crate::error::LeaderError;
+use crate::handle::LeaderHandle;
 use crate::landmark_files::read_landmarks;
 use crate::lessons::Lessons;
 use crate::memory::Memory;
@@ -34,7 +31,6 @@ use crate::web::{self, Face};
 
 /// Edits that may wait; more are not answered.
 const WAITING_EDITS: usize = 16;
-const EVERY_SECOND: Duration = Duration::from_secs(1);
 
 /// What a leader leaves behind.
 #[derive(Clone, Debug)]
@@ -65,30 +61,6 @@ pub struct Leader {
     task: JoinHandle<Result<LeaderReport, LeaderError>>,
 }
 
-/// Changes a running leader's set from within its process.
-#[derive(Clone, Debug)]
-pub struct LeaderHandle {
-    requests: mpsc::Sender<Request>,
-    publications: watch::Receiver<Publication>,
-}
-
-/// Why an edit was not made.
-#[derive(Debug, thiserror::Error)]
-pub enum EditError {
-    /// The leader refused it.
-    #[error(transparent)]
-    Refused(#[from] RefusedEdit),
-    /// The leader has ended.
-    #[error("the leader has ended")]
-    Ended,
-}
-
-#[derive(Debug)]
-struct Request {
-    edit: Edit,
-    answer: oneshot::Sender<Result<SetVersion, RefusedEdit>>,
-}
-
 impl Leader {
     /// Starts a leader; it is published and answers when this returns.
     ///
@@ -107,57 +79,37 @@ impl Leader {
         let state = StateDir::open(&config.state_dir)?;
         let identity = Identity::on(&state);
         let presence = announce(&session, &keys, &identity).await?;
-        let memory = Memory::in_directory(state);
-        let mut book = memory.reopen()?;
-        book.apply(Edit { publish: from_files, ..Edit::default() })?;
-        memory.keep(&book.set())?;
+        let (book, memory) = reopen(state, from_files)?;
 
         let (publications, published) = watch::channel(Publication::of(book.set(), &keys)?);
         let (queries_in, queries) = mpsc::channel(WAITING_EDITS);
-        let (requests_in, requests) = mpsc::channel(WAITING_EDITS);
+        let (handle, requests) = LeaderHandle::new(published.clone(), WAITING_EDITS);
         let (edits, edits_seen) = watch::channel(EditCounts::default());
+        let (cameras, watches) = camera_watch::begin_all(&session, &keys, &config.cameras).await?;
         let put_times = Arc::new(PutTimes::default());
-        let cameras = camera_watch::cameras(&config.cameras);
-        let mut watches = Vec::new();
-        for camera in &config.cameras {
-            watches.push(CameraWatch::begin(&session, &keys, camera, &cameras).await?);
-        }
-        let handle = LeaderHandle { requests: requests_in, publications: published.clone() };
+        let announcements = Announcements::declare(&session, &keys, Arc::clone(&put_times)).await?;
+        let answers = Answers::declare(&session, &keys, published.clone(), queries_in).await?;
+        announcements.say_all(&published.borrow().clone()).await;
         let face = Arc::new(Face {
             vehicle: config.vehicle.clone(),
             identity,
-            session: session.clone(),
-            publications: published.clone(),
+            session,
+            publications: published,
             edits: edits_seen,
-            put_times: Arc::clone(&put_times),
+            put_times,
             desk: handle.clone(),
             cameras,
             camera_ids: config.cameras.clone(),
             lessons: Lessons::default(),
             learners: Arc::new(Semaphore::new(1)),
         });
-        let answers = Answers::declare(&session, &keys, published.clone(), queries_in).await?;
-        let announcements = Announcements::declare(&session, &keys, put_times).await?;
-        announcements.say_all(&published.borrow().clone()).await;
-        let serving = tokio::spawn({
-            let (routes, shutdown) = (web::routes(&face), shutdown.clone());
-            async move {
-                http_face::serve(listener, routes, policy, async move { shutdown.requested().await }).await
-            }
-        });
+        let serving = serve(listener, &face, policy, shutdown.clone());
         let desk = Desk { keys, book, memory, announcements, publications, edits, face };
-        let task = tokio::spawn(async move {
-            let work = desk.work(queries, requests, &shutdown);
-            let (report, superseded) = presence.hold(work, &shutdown).await;
-            if let Err(error) = serving.await {
-                tracing::error!(%error, "the web face ended early");
-            }
-            for watch in watches {
-                watch.end().await;
-            }
-            drop((answers, presence));
-            superseded.map_or(Ok(report), |first| Err(first.into()))
-        });
+        let staff = Staff { presence, serving, watches, answers };
+        let task =
+            tokio::spawn(
+                async move { staff.attend(desk.work(queries, requests, &shutdown), &shutdown).await },
+            );
         tracing::info!(vehicle = config.vehicle, page = %format!("http://{page}/"), "leader");
         Ok(Self { handle, page, task })
     }
@@ -187,109 +139,48 @@ impl Leader {
     }
 }
 
-impl LeaderHandle {
-    /// Makes an edit and returns the version of the set that is in force then.
-    ///
-    /// # Errors
-    /// When it is refused, or the leader has ended.
-    pub async fn edit(&self, edit: Edit) -> Result<SetVersion, EditError> {
-        let (answer, answered) = oneshot::channel();
-        self.requests.send(Request { edit, answer }).await.map_err(|_| EditError::Ended)?;
-        Ok(answered.await.map_err(|_| EditError::Ended)??)
-    }
-
-    /// The set in force.
-    #[must_use]
-    pub fn landmarks(&self) -> Arc<LandmarkSet> {
-        Arc::clone(&self.publications.borrow().set)
-    }
+/// What serves beside the desk, and is taken apart after it.
+struct Staff {
+    presence: Presence,
+    serving: JoinHandle<()>,
+    watches: Vec<CameraWatch>,
+    answers: Answers,
 }
 
-/// Where all changes are made, one after the other.
-struct Desk {
-    keys: VehicleKeys,
-    book: Book,
-    memory: Memory,
-    announcements: Announcements,
-    publications: watch::Sender<Publication>,
-    edits: watch::Sender<EditCounts>,
-    face: Arc<Face>,
-}
-
-impl Desk {
-    async fn work(
-        mut self,
-        mut queries: mpsc::Receiver<Query>,
-        mut requests: mpsc::Receiver<Request>,
+impl Staff {
+    /// Until `work` is done, which `shutdown` or an older leader of the same vehicle brings about.
+    async fn attend(
+        self,
+        work: impl Future<Output = LeaderReport>,
         shutdown: &Shutdown,
-    ) -> LeaderReport {
-        let mut second = interval(EVERY_SECOND);
-        second.set_missed_tick_behavior(MissedTickBehavior::Delay);
-        loop {
-            tokio::select! {
-                () = shutdown.requested() => break,
-                Some(query) = queries.recv() => self.answer(&query).await,
-                Some(request) = requests.recv() => {
-                    let made = self.make(request.edit).await;
-                    // Whoever asked may have gone.
-                    let _ = request.answer.send(made);
-                }
-                _ = second.tick() => self.tell().await,
-            }
+    ) -> Result<LeaderReport, LeaderError> {
+        let (report, superseded) = self.presence.hold(work, shutdown).await;
+        if let Err(error) = self.serving.await {
+            tracing::error!(%error, "the web face ended early");
         }
-        let edits = *self.edits.borrow();
-        LeaderReport { set: Arc::new(self.book.set()), edits }
-    }
-
-    async fn tell(&self) {
-        let publication = self.publications.borrow().clone();
-        self.announcements.say_manifest(&publication).await;
-        let status = self.face.status().await.to_wire(unix_time_ns());
-        self.announcements.say_status(&status).await;
-    }
-
-    async fn answer(&mut self, query: &Query) {
-        let refusal = match edit_of(query) {
-            Err(no_edit) => {
-                self.edits.send_modify(|edits| edits.refused += 1);
-                no_edit.to_string()
-            }
-            Ok(edit) => self.make(edit).await.err().map_or_else(String::new, |refused| refused.to_string()),
-        };
-        answer_edit(query, &self.keys, manifest_of(&self.book.set()), refusal);
-    }
-
-    async fn make(&mut self, edit: Edit) -> Result<SetVersion, RefusedEdit> {
-        let applied = self.book.apply(edit);
-        self.edits.send_modify(|edits| match &applied {
-            Ok(_) => edits.made += 1,
-            Err(_) => edits.refused += 1,
-        });
-        let change = applied?;
-        let set = self.book.set();
-        let version = set.version;
-        if !change.is_empty() {
-            if let Err(error) = self.memory.keep(&set) {
-                tracing::error!(%error, "the set is not on disk: the next start would lack this change");
-            }
-            match Publication::of(set, &self.keys) {
-                Ok(publication) => {
-                    self.publications.send_replace(publication.clone());
-                    self.announcements.say_change(&change, &publication).await;
-                }
-                Err(error) => tracing::error!(%error, "a landmark has no key"),
-            }
-            let (published, retired) = (change.published.len(), change.retired.len());
-            tracing::info!(
-                epoch = version.epoch,
-                version = version.version,
-                published,
-                retired,
-                "landmark set"
-            );
+        for watch in self.watches {
+            watch.end().await;
         }
-        Ok(version)
+        drop((self.answers, self.presence));
+        superseded.map_or(Ok(report), |first| Err(first.into()))
     }
+}
+
+/// The set as it was last, with what stands in files.
+fn reopen(state: StateDir, from_files: Vec<Landmark>) -> Result<(Book, Memory), LeaderError> {
+    let memory = Memory::in_directory(state);
+    let mut book = memory.reopen()?;
+    book.apply(Edit { publish: from_files, ..Edit::default() })?;
+    memory.keep(&book.set())?;
+    Ok((book, memory))
+}
+
+fn serve(listener: TcpListener, face: &Arc<Face>, policy: Policy, shutdown: Shutdown) -> JoinHandle<()> {
+    let routes = web::routes(face);
+    tokio::spawn(async move {
+        let _counted_by_the_face =
+            http_face::serve(listener, routes, policy, async move { shutdown.requested().await }).await;
+    })
 }
 
 async fn announce(

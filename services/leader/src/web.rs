@@ -21,11 +21,11 @@ use serde_json::json;
 use tokio::sync::{Semaphore, watch};
 use zenoh::Session;
 
+use crate::handle::LeaderHandle;
 use crate::lessons::Lessons;
 use crate::metrics;
 use crate::publication::Publication;
 use crate::put_times::PutTimes;
-use crate::run::LeaderHandle;
 use crate::status::{CameraStatus, EditCounts, LeaderStatus, RouterStatus, SetStatus};
 
 /// Everything that the routes look at.

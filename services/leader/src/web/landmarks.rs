@@ -14,7 +14,7 @@ use waymark_proto::documents::{LandmarkDocument, SetDocument, VersionDocument};
 
 use super::{Face, Shared};
 use crate::book::{Edit, RefusedEdit};
-use crate::run::EditError;
+use crate::handle::EditError;
 
 const LANDMARKS: Documents =
     Documents { kind: "landmark", about_all: "The landmarks that are published", about_one: "One of them" };

@@ -1,5 +1,8 @@
 //! `/api/v1/lessons`: learning a landmark from a box that somebody draws.
 
+mod drawn_box;
+mod entries;
+
 use std::sync::Arc;
 
 use axum::Json;
@@ -7,84 +10,15 @@ use axum::extract::{Path, RawQuery, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use http_face::{Api, Format, Operation, Parameters, PictureRequest, Problem, integer, picture_answer};
+use http_face::{Api, Format, Operation, Parameters, PictureRequest, Problem, picture_answer};
 use ingest::{camera_thread, view};
-use schemars::JsonSchema;
-use serde::Serialize;
 use serde_json::json;
-use vision::learn::LearnOptions;
-use vision::outcome::NearestMatch;
 use vision::overlay::tint;
-use vision::{RectPx, ShapeClass};
-use waymark_proto::documents::LandmarkDocument;
 
 use super::{Face, Shared};
-use crate::lessons::{Learned, Lesson};
-
-/// Coordinates and sides that may be asked for, frame pixels.
-const PIXELS: std::ops::RangeInclusive<u32> = 0..=65_535;
-
-/// Widths of objects, metres.
-const SIZES_M: std::ops::RangeInclusive<f64> = 0.001..=1000.0;
-
-const SHAPES: &[&str] = &["any", "block", "rectangle", "octagon", "triangle", "circle"];
-
-/// A picture that is kept to learn from.
-#[derive(Serialize, JsonSchema)]
-struct LessonEntry {
-    /// Names it in the addresses of what is learned from it.
-    lesson: u64,
-    /// The camera's id.
-    camera: String,
-    /// The frame's number in its stream.
-    sequence: u64,
-    /// When it was captured, ns since the Unix epoch.
-    captured_at_ns: i64,
-    /// Columns.
-    width_px: u32,
-    /// Rows.
-    height_px: u32,
-}
-
-/// What was learned from a box.
-#[derive(Serialize, JsonSchema)]
-struct LearnedEntry {
-    /// The landmark; publish it with PUT.
-    landmark: LandmarkDocument,
-    /// How many tolerances everything else in the picture is off: above 1 nothing else matches, and the more the
-    /// better. Null where there is nothing else.
-    separation: Option<f32>,
-    /// Where in the rest of the picture it comes nearest.
-    nearest: Option<PlaceEntry>,
-    /// How many tolerances the object itself is off at its best place; null where it is smaller than the window.
-    object: Option<f32>,
-    /// What registration finds in this picture; null where it finds nothing.
-    seen: Option<SeenEntry>,
-}
-
-/// A place in the picture.
-#[derive(Serialize, JsonSchema)]
-struct PlaceEntry {
-    /// Frame pixels.
-    x_px: f32,
-    /// Frame pixels.
-    y_px: f32,
-}
-
-/// What registration finds.
-#[derive(Serialize, JsonSchema)]
-struct SeenEntry {
-    /// Centre, frame pixels.
-    x_px: f32,
-    /// Centre, frame pixels.
-    y_px: f32,
-    /// Area, frame pixels².
-    area_px2: f32,
-    /// Belief, 0..1.
-    score: f32,
-    /// Whether the centre lies in the box.
-    is_in_box: bool,
-}
+use crate::lessons::Lesson;
+use drawn_box::{box_asked, with_box};
+use entries::{LearnedEntry, LessonEntry};
 
 pub(super) fn routes(api: Api, face: &Arc<Face>) -> Api {
     let shared = || Arc::clone(face);
@@ -115,21 +49,6 @@ fn of_lesson(summary: &'static str) -> Operation {
         .problem(404, "The picture is not kept any more")
 }
 
-fn with_box(operation: Operation) -> Operation {
-    operation
-        .required("x", "Left edge of the box, frame pixels", integer(&PIXELS))
-        .required("y", "Upper edge, frame pixels", integer(&PIXELS))
-        .required("w", "Columns", integer(&PIXELS))
-        .required("h", "Rows", integer(&PIXELS))
-        .query("shape", "Its outline", json!({ "type": "string", "enum": SHAPES }))
-        .query(
-            "size_m",
-            "Its width, metres",
-            json!({ "type": "number", "minimum": SIZES_M.start(), "maximum": SIZES_M.end() }),
-        )
-        .problem(422, "The box leaves the picture or is too small")
-}
-
 async fn begin(State(face): Shared, RawQuery(query): RawQuery) -> Result<Response, Problem> {
     let mut query = Parameters::parse(query.as_deref())?;
     let camera = query.text("camera").ok_or_else(|| Problem::parameter("camera", "", "a camera's id"))?;
@@ -141,15 +60,7 @@ async fn begin(State(face): Shared, RawQuery(query): RawQuery) -> Result<Respons
         Ok(face.lessons.keep(camera, newest.sequence, newest.captured_at_ns, frame))
     });
     let lesson = kept.await?;
-    let entry = LessonEntry {
-        lesson: lesson.number,
-        camera: lesson.camera.clone(),
-        sequence: lesson.sequence,
-        captured_at_ns: lesson.captured_at_ns,
-        width_px: lesson.frame.width(),
-        height_px: lesson.frame.height(),
-    };
-    Ok((StatusCode::CREATED, Json(entry)).into_response())
+    Ok((StatusCode::CREATED, Json(LessonEntry::from(lesson.as_ref()))).into_response())
 }
 
 async fn picture(
@@ -174,7 +85,8 @@ async fn learned(
     let (region, options) = box_asked(&mut query)?;
     query.finish()?;
     face.work(move |_| {
-        Ok(Json(entry(&lesson.learn(region, &options).map_err(|error| unlearnable(&error))?, region)))
+        let learned = lesson.learn(region, &options).map_err(|error| unlearnable(&error))?;
+        Ok(Json(LearnedEntry::of(&learned, region)))
     })
     .await
 }
@@ -224,47 +136,6 @@ fn answer(lesson: &Lesson, frame: vision::Frame, request: &PictureRequest) -> Re
     Ok(picture_answer(lesson.sequence, lesson.captured_at_ns, Format::Png, bytes.into()))
 }
 
-fn box_asked(query: &mut Parameters) -> Result<(RectPx, LearnOptions), Problem> {
-    let mut side = |name| {
-        let number = query.number(name, PIXELS)?;
-        number.ok_or_else(|| Problem::parameter(name, "", "a number of pixels: the box needs x, y, w and h"))
-    };
-    let region = RectPx { x: side("x")?, y: side("y")?, width: side("w")?, height: side("h")? };
-    let shape = match query.text("shape") {
-        None => ShapeClass::default(),
-        Some(name) => shape(&name).ok_or_else(|| Problem::parameter("shape", &name, &SHAPES.join(", ")))?,
-    };
-    let size_m = query.number("size_m", SIZES_M)?.map(|size_m| size_m as f32);
-    Ok((region, LearnOptions { id: "learned".to_owned(), shape, size_m, ..LearnOptions::default() }))
-}
-
-fn shape(name: &str) -> Option<ShapeClass> {
-    use ShapeClass::{Any, Block, Circle, Octagon, Rectangle, Triangle};
-    [Any, Block, Rectangle, Octagon, Triangle, Circle].into_iter().find(|shape| shape.name() == name)
-}
-
 fn unlearnable(error: &vision::LearnError) -> Problem {
     Problem::new(StatusCode::UNPROCESSABLE_ENTITY, error.to_string())
-}
-
-fn entry(learned: &Learned, region: RectPx) -> LearnedEntry {
-    let place = |nearest: NearestMatch| PlaceEntry { x_px: nearest.at.x, y_px: nearest.at.y };
-    let contains = |x: f32, y: f32| {
-        let across = region.x as f32..=(region.x + region.width) as f32;
-        let down = region.y as f32..=(region.y + region.height) as f32;
-        across.contains(&x) && down.contains(&y)
-    };
-    LearnedEntry {
-        landmark: LandmarkDocument::from(&learned.landmark),
-        separation: Some(learned.separation.excess()).filter(|excess| excess.is_finite()),
-        nearest: learned.separation.outside.map(place),
-        object: learned.separation.inside.map(|inside| inside.excess),
-        seen: learned.seen.as_ref().map(|seen| SeenEntry {
-            x_px: seen.centroid.x,
-            y_px: seen.centroid.y,
-            area_px2: seen.area_px2,
-            score: seen.score,
-            is_in_box: contains(seen.centroid.x, seen.centroid.y),
-        }),
-    }
 }
