@@ -91,6 +91,11 @@ impl Place {
 
     /// A follower with a camera of its own, which needs no router to reach it.
     pub(crate) fn start_vehicle(&self, vehicle: &str, more: &[&str]) -> Vehicle {
+        self.start_vehicle_with(vehicle, more, &[])
+    }
+
+    /// The same, with settings for the camera too.
+    pub(crate) fn start_vehicle_with(&self, vehicle: &str, more: &[&str], camera: &[&str]) -> Vehicle {
         let own = format!("tcp/{}", free_address());
         let listen = format!("zenoh.listen=[\"{own}\"]");
         let settings: Vec<&str> = [listen.as_str()].into_iter().chain(more.iter().copied()).collect();
@@ -101,7 +106,8 @@ impl Place {
             format!("vehicle={vehicle}"),
             "source=sim:rink?seed=5&fps=5".to_owned(),
         ];
-        let settings = settings.into_iter().flat_map(|setting| ["--set".to_owned(), setting]);
+        let settings = settings.into_iter().chain(camera.iter().map(|setting| (*setting).to_owned()));
+        let settings = settings.flat_map(|setting| ["--set".to_owned(), setting]);
         let camera = Program::start(["camera".to_owned()].into_iter().chain(settings));
         Vehicle { program, face, _camera: camera }
     }

@@ -11,3 +11,4 @@ mod fleet;
 mod landmarks;
 mod recorder;
 mod tls;
+mod video;
