@@ -33,7 +33,8 @@ const DISC_SIZE_PX: u32 = 20;
 const PALEST: [f32; 3] = [0.3, 0.45, 0.62];
 /// Deeper than any colour: only the sign's own shades count, which tell it from a brick wall behind it.
 const OWN_SHADES: f32 = 2.0;
-/// Rectangles are looked for by these only where nothing scores so much: half a bush behind a post has their form.
+/// Where something scores so much, rectangles are not looked for by these, since half a bush behind a post has their form;
+/// nor is a plain landmark looked for within stricter tolerances, which tell it from a surface of nearly its colour.
 const CLEAR_SCORE: f32 = 0.5;
 
 /// What is searched for and where.
@@ -105,12 +106,18 @@ impl Finder {
             marker.mark(search.frame, search.region, search.likeness, like);
             components.find(like);
             from_seeds(search, components, &mut found);
+            if !is_clear(&found) {
+                let likeness = search.likeness.stricter();
+                marker.refine(search.frame, search.region, &likeness, like, deep);
+                components.find(deep);
+                from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
+            }
         } else {
             let palest = search.likeness.with_palest(PALEST[0]);
             marker.mark(search.frame, search.region, &palest, like);
             for palest in PALEST.into_iter().chain([OWN_SHADES]) {
-                let clear = found.iter().any(|known: &Candidate| known.score >= CLEAR_SCORE);
-                if palest == OWN_SHADES && clear && search.landmark.shape == ShapeClass::Rectangle {
+                if palest == OWN_SHADES && is_clear(&found) && search.landmark.shape == ShapeClass::Rectangle
+                {
                     break;
                 }
                 let likeness = search.likeness.with_palest(palest);
@@ -122,6 +129,10 @@ impl Finder {
         found.sort_by(|a, b| b.score.total_cmp(&a.score));
         without_overlaps(found)
     }
+}
+
+fn is_clear(found: &[Candidate]) -> bool {
+    found.iter().any(|known| known.score >= CLEAR_SCORE)
 }
 
 fn from_seeds(search: &Search<'_>, components: &Components, all: &mut Vec<Candidate>) {

@@ -15,6 +15,9 @@ const FOLLOWED_GAIN: f32 = 1.22;
 /// brightest channel for each unit by which the gain differs from 1.
 const WIDENING: f32 = 0.12;
 
+/// What stands before a surface of nearly its own colour is told from it within this part of the tolerances.
+const STRICT: f32 = 0.6;
+
 /// A shade is vivid when its channels differ by this part of the largest.
 const VIVID: f32 = 0.4;
 /// Light on a face turned to it, over the most that a whole object gets.
@@ -88,6 +91,16 @@ impl Likeness {
     pub(crate) fn with_palest(&self, palest: f32) -> Self {
         let face = self.face.map(|face| face.with_palest(palest));
         Self { face, ..self.clone() }
+    }
+
+    /// The same, but plain shades match within a part of their tolerances only.
+    pub(crate) fn stricter(&self) -> Self {
+        let strict = |cone: &Cone| Cone {
+            tolerance: cone.tolerance.map(|tolerance| STRICT * tolerance),
+            widening: STRICT * cone.widening,
+            ..*cone
+        };
+        Self { cones: self.cones.iter().map(strict).collect(), face: self.face }
     }
 
     /// The widest channel's tolerance under a light of `gain` over the descriptor's.

@@ -1,0 +1,29 @@
+//! A block on a floor of nearly its own colour.
+
+mod scene;
+
+use scene::{Block, picture, red_landmark, seen, set_of, stamp};
+use vision::{ColorStats, Follow, FollowOptions, Landmark, NoProbe};
+
+fn landmark(mean: [f32; 3]) -> Landmark {
+    let shade = ColorStats { mean, variance: [4.0; 3] };
+    Landmark { id: "blue".into(), shades: vec![shade], ..red_landmark() }
+}
+
+fn moving(k: u32, color: [u8; 3]) -> Block {
+    Block::square(20.3 + 2.1 * k as f32, 50.0 + 0.4 * k as f32, 24.0, color)
+}
+
+#[test]
+fn a_block_is_found_on_a_floor_that_would_be_its_colour_under_other_light() {
+    // The floor is nearly this with 1.45 times as much light, and the block is this with 0.8 times as much.
+    let landmark = landmark([42.0, 63.0, 102.0]);
+    for k in 0..8 {
+        let mut follow = Follow::new(FollowOptions::default(), set_of(vec![landmark.clone()]));
+        let block = moving(10 + k, [34, 50, 82]);
+        let outcome = follow.on_frame(&picture(&[block], 1.0, k), stamp(k), &mut NoProbe);
+        let [(_, sighting)] = seen(&outcome)[..] else { panic!("picture {k}: {:?}", outcome.landmarks) };
+        let off_px = sighting.centroid.distance_px(block.centre());
+        assert!(off_px < 3.0, "picture {k}: off by {off_px} px");
+    }
+}
