@@ -1,7 +1,7 @@
 //! What real cameras need beyond the fixed statistics of thesis 4.0.3.
 //!
 //! A search marks the pixels that may show the landmark under the light of the moment ([`likeness`]), takes connected
-//! ones as seeds, tells object from background pixel by pixel around each ([`segment`]), measures with soft edges
+//! ones as seeds, tells object from background and from its own shadow around each ([`segment`], [`shadow`]), measures with soft edges
 //! ([`soft_edge`]) and scores what came out ([`choose`]). Where to search and what to believe is for `follow` to say.
 
 mod candidate;
@@ -15,6 +15,7 @@ pub(crate) mod noise;
 pub(crate) mod palette;
 pub(crate) mod patch;
 mod segment;
+mod shadow;
 mod soft_edge;
 mod tracing;
 mod window;

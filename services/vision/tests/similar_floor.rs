@@ -1,9 +1,12 @@
-//! A block on a floor of nearly its own colour.
+//! A block on a floor of nearly its own colour: the floor's shadow, and the floor itself under other light.
 
 mod scene;
 
 use scene::{Block, picture, red_landmark, seen, set_of, stamp};
 use vision::{ColorStats, Follow, FollowOptions, Landmark, NoProbe};
+
+/// A little redder than the floor's shadow, which is (22, 47, 82).
+const BLUE: [u8; 3] = [38, 48, 82];
 
 fn landmark(mean: [f32; 3]) -> Landmark {
     let shade = ColorStats { mean, variance: [4.0; 3] };
@@ -12,6 +15,19 @@ fn landmark(mean: [f32; 3]) -> Landmark {
 
 fn moving(k: u32, color: [u8; 3]) -> Block {
     Block::square(20.3 + 2.1 * k as f32, 50.0 + 0.4 * k as f32, 24.0, color)
+}
+
+#[test]
+fn a_shadow_of_nearly_its_colour_is_no_part_of_a_block() {
+    let mut follow = Follow::new(FollowOptions::default(), set_of(vec![landmark(BLUE.map(f32::from))]));
+    for k in 0..40 {
+        let block = moving(k, BLUE);
+        let outcome = follow.on_frame(&picture(&[block], 1.0, k), stamp(k), &mut NoProbe);
+        let [(_, sighting)] = seen(&outcome)[..] else { panic!("frame {k}: {:?}", outcome.landmarks) };
+        let off_px = sighting.centroid.distance_px(block.centre());
+        assert!(off_px < 0.7, "frame {k}: off by {off_px} px");
+        assert!((sighting.area_px2 / 576.0 - 1.0).abs() < 0.1, "frame {k}: {} px²", sighting.area_px2);
+    }
 }
 
 #[test]

@@ -161,6 +161,11 @@ impl Likeness {
         self.cones.iter().any(|cone| cone.is_lit_face(pixel.map(f32::from)))
     }
 
+    /// The means of the shades.
+    pub(crate) fn shades(&self) -> impl Iterator<Item = [f32; 3]> + '_ {
+        self.cones.iter().map(|cone| cone.shade)
+    }
+
     /// The face of a lettered sign; `None` of other landmarks.
     pub(crate) fn face(&self) -> Option<&Face> {
         self.face.as_ref()

@@ -66,6 +66,10 @@ impl Patch {
         }
     }
 
+    pub(crate) fn set(&mut self, x: i32, y: i32) {
+        self.mask.set(x as u32, y as u32);
+    }
+
     pub(crate) fn width(&self) -> i32 {
         self.rect.width as i32
     }

@@ -7,6 +7,7 @@
 use super::likeness::Likeness;
 use super::palette::{Cluster, levels, palette};
 use super::patch::Patch;
+use super::shadow::{self, Cast};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
 
@@ -34,21 +35,41 @@ pub(crate) enum Parts {
     All,
 }
 
-/// The pixels of the object that `seed` is part of. The seed's rectangle must leave room around it.
+/// The pixels of the object that `seed` is part of, without the shadow that it casts. The seed's rectangle must leave room
+/// around it.
 pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Parts) -> Option<Patch> {
-    let size_px = (seed.count() as f32).sqrt();
-    let reach = (0.3 * size_px).ceil().max(2.0) as i32;
-    let near = seed.dilated(reach);
+    let surfaces = background_colours(frame, seed, &seed.dilated(reach_px(seed)), likeness);
+    let object = grown(frame, seed, &surfaces, None, parts)?;
+    if likeness.face().is_some() {
+        return Some(object);
+    }
+    match shadow::cast(frame, &object, likeness, &surfaces) {
+        Some(cast) => grown(frame, &cast.rest, &surfaces, Some(&cast), parts),
+        None => Some(object),
+    }
+}
+
+/// The pixels around `seed` that are nearer to its colours than to those of the `surfaces` around it.
+fn grown(
+    frame: &Frame,
+    seed: &Patch,
+    surfaces: &[Cluster],
+    cast: Option<&Cast>,
+    parts: Parts,
+) -> Option<Patch> {
+    let near = seed.dilated(reach_px(seed));
     let own = Shaded::new(&object_colours(frame, seed));
-    let others = Plain::new(&background_colours(frame, seed, &near, likeness));
+    let others = Plain::new(surfaces);
     let sure = seed.eroded(2);
+    let sure_shadow = cast.map_or_else(|| Patch::empty(seed.rect), |cast| cast.patch.eroded(1));
     // What lies well inside the seed needs no asking: its colours are the object's.
-    let asked = near.without(&sure).only(|x, y| {
+    let asked = near.without(&sure).without(&sure_shadow).only(|x, y| {
         let color = levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32));
-        own.distance2(color) < others.distance2(color)
+        let shadow2 = cast.map_or(f32::MAX, |cast| cast.distance2(color));
+        own.distance2(color) < others.distance2(color).min(shadow2)
     });
     let mut object = asked.with(&sure);
-    if size_px >= OPENING_SIZE_PX {
+    if seed.count() as f32 >= OPENING_SIZE_PX * OPENING_SIZE_PX {
         object = object.opened(1);
     }
     let least = match parts {
@@ -56,6 +77,11 @@ pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Pa
         Parts::All => 0.1,
     };
     object.parts_overlapping(seed, least).map(|part| part.filled())
+}
+
+/// How far beyond a seed the object may reach.
+fn reach_px(seed: &Patch) -> i32 {
+    (0.3 * (seed.count() as f32).sqrt()).ceil().max(2.0) as i32
 }
 
 /// A rectangle around `bounds` with room for the background to show itself.
