@@ -35,6 +35,12 @@ impl Face {
         Self { root: root.trim_end_matches('/').to_owned(), agent: config.into() }
     }
 
+    /// Host and port.
+    #[must_use]
+    pub fn address(&self) -> &str {
+        self.root.trim_start_matches("http://")
+    }
+
     /// Waits until somebody listens: a page's address is known before its program serves it.
     ///
     /// # Panics

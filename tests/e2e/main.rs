@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // all of this is test code: the lints know only #[test] functions
 
+mod attacks;
 mod convoy;
 mod crash;
 mod demo;
