@@ -148,7 +148,7 @@ function makeStatistic(channel) {
 function fillRow(row, { landmark, entry, several }, ageMs) {
   const [name, result, mean, variance, facts] = row.children;
   setText(name.children[0], several ? `${entry.id} #${entry.instance}` : entry.id);
-  const comparison = compare(landmark ?? UNKNOWN, entry.observed ?? entry.miss?.observed, entry.gain);
+  const comparison = compare(landmark ?? UNKNOWN, entry.observed ?? entry.miss?.observed, entry);
   const shade = comparison.shades > 1 ? ` · shade ${comparison.shade} of ${comparison.shades}` : "";
   setText(name.children[1], landmark ? `${landmark.shape} · window ${landmark.window_px.join(" × ")}${shade}` : "another descriptor than is known here");
   // What was, is not to be taken for what is.

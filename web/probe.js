@@ -112,7 +112,7 @@ const rounded = (values) => values.map((value) => value.toFixed(0)).join(", ");
 /** Which landmark this window would match, or the one it is nearest to. @param {import("./statistics.js").Statistics} window */
 function verdict(window) {
   const outside = known.landmarks.map((landmark) => {
-    const { mean, variance } = compare(landmark, window, null);
+    const { mean, variance } = compare(landmark, window, {});
     return { id: landmark.id, count: [...mean, ...variance].filter((one) => one.within === false).length };
   });
   outside.sort((a, b) => a.count - b.count);

@@ -3,26 +3,29 @@
 /** @typedef {{mean: number[], variance: number[]}} Statistics */
 /** @typedef {{expected: number, tolerance: number, observed: number | null, offBy: number | null, within: boolean | null}} Comparison */
 
+/** @typedef {{gain?: number | null, tolerance_scale?: number | null, noise_variance?: number[] | null}} Adaptation how the registration adapted to a frame; nothing of it in faithful mode */
+
 /**
- * Compares what was observed with the nearest shade. Under another light the means scale with the gain and the
- * variances with its square; in faithful mode there is no gain and the descriptor stands as it is.
- * @param {{shades: Statistics[], tolerance: Statistics}} landmark @param {Statistics | null | undefined} observed @param {number | null | undefined} gain
+ * Compares what was observed with the nearest shade, as the registration did: under another light the means scale with
+ * the gain and the variances with its square, tolerances of the means are wider, and the camera's noise comes on top.
+ * @param {{shades: Statistics[], tolerance: Statistics}} landmark @param {Statistics | null | undefined} observed @param {Adaptation} adaptation
  */
-export function compare(landmark, observed, gain) {
-  const factor = typeof gain === "number" && gain > 0 ? gain : 1;
-  const shades = landmark.shades.map((shade) => scaled(shade, factor));
-  const index = observed ? nearest(shades, landmark.tolerance, observed) : 0;
-  const shade = shades[index];
+export function compare(landmark, observed, { gain, tolerance_scale, noise_variance }) {
+  const isAdapted = typeof gain === "number" && gain > 0;
+  const shades = landmark.shades.map((shade) => (isAdapted ? inLight(shade, gain, noise_variance ?? [0, 0, 0]) : shade));
+  const tolerance = { ...landmark.tolerance, mean: landmark.tolerance.mean.map((mean) => mean * (tolerance_scale ?? 1)) };
+  // The gain is that of the shade whose colour is nearest; without one all six statistics decide.
+  const index = observed ? nearest(shades, tolerance, observed, isAdapted ? ["mean"] : ["mean", "variance"]) : 0;
   const side = (/** @type {"mean" | "variance"} */ kind) =>
-    [0, 1, 2].map((channel) => one(shade[kind][channel], landmark.tolerance[kind][channel], observed?.[kind]?.[channel]));
+    [0, 1, 2].map((channel) => one(shades[index][kind][channel], tolerance[kind][channel], observed?.[kind]?.[channel]));
   return { shade: index + 1, shades: shades.length, mean: side("mean"), variance: side("variance") };
 }
 
-/** @param {Statistics} shade @param {number} gain @returns {Statistics} */
-function scaled(shade, gain) {
+/** @param {Statistics} shade @param {number} gain @param {number[]} noise @returns {Statistics} */
+function inLight(shade, gain, noise) {
   return {
     mean: shade.mean.map((value) => Math.min(255, value * gain)),
-    variance: shade.variance.map((value) => value * gain * gain),
+    variance: shade.variance.map((value, channel) => value * gain * gain + noise[channel]),
   };
 }
 
@@ -35,9 +38,12 @@ function one(expected, tolerance, observed) {
   return { expected, tolerance, observed, offBy, within };
 }
 
-/** The shade whose worst statistic is least far out. @param {Statistics[]} shades @param {Statistics} tolerance @param {Statistics} observed */
-function nearest(shades, tolerance, observed) {
-  const worst = shades.map((shade) => Math.max(...(/** @type {const} */ (["mean", "variance"])).flatMap((kind) =>
+/**
+ * The shade whose worst statistic is least far out.
+ * @param {Statistics[]} shades @param {Statistics} tolerance @param {Statistics} observed @param {("mean" | "variance")[]} kinds
+ */
+function nearest(shades, tolerance, observed, kinds) {
+  const worst = shades.map((shade) => Math.max(...kinds.flatMap((kind) =>
     shade[kind].map((value, channel) => Math.abs(observed[kind][channel] - value) / Math.max(tolerance[kind][channel], 1e-6)))));
   return worst.indexOf(Math.min(...worst));
 }

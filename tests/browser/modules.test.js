@@ -54,7 +54,7 @@ const LANDMARK = { shades: [RED, BLUE], tolerance: { mean: [15, 15, 15], varianc
 
 test("tolerances include their bounds, and the distance beyond them is told with its side", async () => {
   const observed = { mean: [195, 34, 40], variance: [151, 80, 10] };
-  const { shade, mean, variance } = await call("/statistics.js", "compare", LANDMARK, observed, null);
+  const { shade, mean, variance } = await call("/statistics.js", "compare", LANDMARK, observed, {});
   assert.equal(shade, 1);
   assert.deepEqual(mean.map((/** @type {any} */ one) => [one.within, one.offBy]), [[true, 0], [false, -1], [true, 0]]);
   assert.deepEqual(variance.map((/** @type {any} */ one) => [one.within, one.offBy]), [[false, 1], [true, 0], [true, 0]]);
@@ -62,11 +62,15 @@ test("tolerances include their bounds, and the distance beyond them is told with
 
 test("the nearest shade is compared, in the light of the moment", async () => {
   const dim = { mean: [20, 35, 80], variance: [25, 20, 15] };
-  const { shade, mean, variance } = await call("/statistics.js", "compare", LANDMARK, dim, 0.5);
+  const { shade, mean, variance } = await call("/statistics.js", "compare", LANDMARK, dim, { gain: 0.5 });
   assert.equal(shade, 2);
   assert.deepEqual(mean.map((/** @type {any} */ one) => one.expected), [20, 35, 80]);
   assert.deepEqual(variance.map((/** @type {any} */ one) => one.expected), [25, 20, 15]);
-  const nothing = await call("/statistics.js", "compare", LANDMARK, null, null);
+  const adapted = await call("/statistics.js", "compare", LANDMARK, dim, { gain: 0.5, tolerance_scale: 2, noise_variance: [3, 2, 1] });
+  assert.deepEqual(adapted.mean.map((/** @type {any} */ one) => one.tolerance), mean.map((/** @type {any} */ one) => 2 * one.tolerance));
+  assert.deepEqual(adapted.variance.map((/** @type {any} */ one) => one.expected), [28, 22, 16]);
+  assert.deepEqual(adapted.variance.map((/** @type {any} */ one) => one.tolerance), variance.map((/** @type {any} */ one) => one.tolerance));
+  const nothing = await call("/statistics.js", "compare", LANDMARK, null, {});
   assert.equal(nothing.mean[0].within, null);
 });
 
