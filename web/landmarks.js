@@ -189,7 +189,10 @@ function fillResult(state, entry, ageMs, revision) {
 function fillStatistic(element, one) {
   const [, expected, observed, verdict] = element.children;
   const isKnown = Number.isFinite(one.expected);
-  setText(expected, isKnown ? `${one.expected.toFixed(0)} ± ${one.tolerance.toFixed(0)}` : MISSING);
+  const allowed = one.isUpperBound
+    ? `≤ ${(one.expected + one.tolerance).toFixed(0)}`
+    : `${one.expected.toFixed(0)} ± ${one.tolerance.toFixed(0)}`;
+  setText(expected, isKnown ? allowed : MISSING);
   setText(observed, figure(one.observed, 0));
   const state = /** @type {HTMLElement} */ (verdict);
   state.hidden = one.within === null || !isKnown;

@@ -1,13 +1,14 @@
 // The six statistics of thesis 4.0.1: expected ± tolerance against observed.
 
 /** @typedef {{mean: number[], variance: number[]}} Statistics */
-/** @typedef {{expected: number, tolerance: number, observed: number | null, offBy: number | null, within: boolean | null}} Comparison */
+/** @typedef {{expected: number, tolerance: number, isUpperBound: boolean, observed: number | null, offBy: number | null, within: boolean | null}} Comparison an upper bound is met by anything below */
 
 /** @typedef {{gain?: number | null, tolerance_scale?: number | null, noise_variance?: number[] | null}} Adaptation how the registration adapted to a frame; nothing of it in faithful mode */
 
 /**
  * Compares what was observed with the nearest shade, as the registration did: under another light the means scale with
- * the gain and the variances with its square, tolerances of the means are wider, and the camera's noise comes on top.
+ * the gain and the variances with its square, tolerances of the means are wider, and the camera's noise comes on top. There an object
+ * that is smoother than it was when it was learned, since it is blurred or far away, is none the less the same.
  * @param {{shades: Statistics[], tolerance: Statistics}} landmark @param {Statistics | null | undefined} observed @param {Adaptation} adaptation
  */
 export function compare(landmark, observed, { gain, tolerance_scale, noise_variance }) {
@@ -16,8 +17,10 @@ export function compare(landmark, observed, { gain, tolerance_scale, noise_varia
   const tolerance = { ...landmark.tolerance, mean: landmark.tolerance.mean.map((mean) => mean * (tolerance_scale ?? 1)) };
   // The gain is that of the shade whose colour is nearest; without one all six statistics decide.
   const index = observed ? nearest(shades, tolerance, observed, isAdapted ? ["mean"] : ["mean", "variance"]) : 0;
-  const side = (/** @type {"mean" | "variance"} */ kind) =>
-    [0, 1, 2].map((channel) => one(shades[index][kind][channel], tolerance[kind][channel], observed?.[kind]?.[channel]));
+  const side = (/** @type {"mean" | "variance"} */ kind) => [0, 1, 2].map((channel) => {
+    const [expected, allowed, found] = [shades[index][kind][channel], tolerance[kind][channel], observed?.[kind]?.[channel]];
+    return isAdapted && kind === "variance" ? atMost(expected, allowed, found) : around(expected, allowed, found);
+  });
   return { shade: index + 1, shades: shades.length, mean: side("mean"), variance: side("variance") };
 }
 
@@ -30,12 +33,20 @@ function inLight(shade, gain, noise) {
 }
 
 /** @param {number} expected @param {number} tolerance @param {number | undefined} observed @returns {Comparison} */
-function one(expected, tolerance, observed) {
-  if (typeof observed !== "number") return { expected, tolerance, observed: null, offBy: null, within: null };
+function around(expected, tolerance, observed) {
+  const bound = { expected, tolerance, isUpperBound: false };
+  if (typeof observed !== "number") return { ...bound, observed: null, offBy: null, within: null };
   const difference = observed - expected;
   const within = Math.abs(difference) <= tolerance;
-  const offBy = within ? 0 : difference - Math.sign(difference) * tolerance;
-  return { expected, tolerance, observed, offBy, within };
+  return { ...bound, observed, offBy: within ? 0 : difference - Math.sign(difference) * tolerance, within };
+}
+
+/** @param {number} expected @param {number} tolerance @param {number | undefined} observed @returns {Comparison} */
+function atMost(expected, tolerance, observed) {
+  const bound = { expected, tolerance, isUpperBound: true };
+  if (typeof observed !== "number") return { ...bound, observed: null, offBy: null, within: null };
+  const offBy = Math.max(0, observed - expected - tolerance);
+  return { ...bound, observed, offBy, within: offBy === 0 };
 }
 
 /**

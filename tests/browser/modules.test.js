@@ -70,6 +70,9 @@ test("the nearest shade is compared, in the light of the moment", async () => {
   assert.deepEqual(adapted.mean.map((/** @type {any} */ one) => one.tolerance), mean.map((/** @type {any} */ one) => 2 * one.tolerance));
   assert.deepEqual(adapted.variance.map((/** @type {any} */ one) => one.expected), [28, 22, 16]);
   assert.deepEqual(adapted.variance.map((/** @type {any} */ one) => one.tolerance), variance.map((/** @type {any} */ one) => one.tolerance));
+  // Smoother than learned is no fault of what was followed; rougher is.
+  const blurred = await call("/statistics.js", "compare", LANDMARK, { ...dim, variance: [0, 0, 900] }, { gain: 0.5 });
+  assert.deepEqual(blurred.variance.map((/** @type {any} */ one) => one.within), [true, true, false]);
   const nothing = await call("/statistics.js", "compare", LANDMARK, null, {});
   assert.equal(nothing.mean[0].within, null);
 });
