@@ -1,8 +1,9 @@
 //! What real cameras need beyond the fixed statistics of thesis 4.0.3.
 //!
 //! A search marks the pixels that may show the landmark under the light of the moment ([`likeness`]), takes connected
-//! ones as seeds, tells object from background and from its own shadow around each ([`segment`], [`shadow`]), measures with soft edges
-//! ([`soft_edge`]) and scores what came out ([`choose`]). Where to search and what to believe is for `follow` to say.
+//! ones as seeds, tells object from background ([`segment`]) and from its own shadow ([`shadow`]) around each, measures
+//! with soft edges ([`soft_edge`]) and scores what came out ([`choose`]). Where to search and what to believe is for
+//! `follow` to say.
 
 mod candidate;
 pub(crate) mod choose;

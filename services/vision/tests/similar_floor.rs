@@ -2,7 +2,7 @@
 
 mod scene;
 
-use scene::{Block, picture, red_landmark, seen, set_of, stamp};
+use scene::{Block, RED, picture, red_landmark, seen, set_of, stamp};
 use vision::{ColorStats, Follow, FollowOptions, Landmark, NoProbe};
 
 /// A little redder than the floor's shadow, which is (22, 47, 82).
@@ -41,5 +41,14 @@ fn a_block_is_found_on_a_floor_that_would_be_its_colour_under_other_light() {
         let [(_, sighting)] = seen(&outcome)[..] else { panic!("picture {k}: {:?}", outcome.landmarks) };
         let off_px = sighting.centroid.distance_px(block.centre());
         assert!(off_px < 3.0, "picture {k}: off by {off_px} px");
+    }
+}
+
+#[test]
+fn a_shadow_alone_is_not_taken_for_a_block_of_its_colour() {
+    let mut follow = Follow::new(FollowOptions::default(), set_of(vec![landmark(BLUE.map(f32::from))]));
+    for k in 0..12 {
+        let outcome = follow.on_frame(&picture(&[moving(k, RED)], 1.0, k), stamp(k), &mut NoProbe);
+        assert!(seen(&outcome).is_empty(), "frame {k}: {:?}", outcome.landmarks);
     }
 }

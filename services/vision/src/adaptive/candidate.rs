@@ -6,7 +6,7 @@ use super::face::LETTERING_BRIGHTNESS;
 use super::like::Marker;
 use super::likeness::Likeness;
 use super::patch::Patch;
-use super::segment::{self, Parts};
+use super::segment::{self, Parts, Segmented};
 use super::soft_edge::{self, Edge};
 use super::window;
 use crate::bitmask::BitMask;
@@ -26,6 +26,8 @@ const PARTS_REACH: f32 = 0.5;
 const FILLED_SOLIDITY: f32 = 0.55;
 /// Blocks that fill this much of their hull have no gaps.
 const WHOLE_SOLIDITY: f32 = 0.8;
+/// What is more like a shadow than like the landmark keeps this part of its score.
+const IF_SHADOW: f32 = 0.3;
 /// Seeds larger than this show an outline, px.
 const DISC_SIZE_PX: u32 = 20;
 /// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
@@ -193,7 +195,7 @@ fn seed_patch(search: &Search<'_>, components: &Components, seed: &Component, pa
 
 fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
     let parts = if search.landmark.shape.is_sign() { Parts::All } else { Parts::Largest };
-    let seen = segment::object(search.frame, seed, search.likeness, parts)?;
+    let Segmented { object: seen, is_shadow } = segment::object(search.frame, seed, search.likeness, parts)?;
     let form = Form::of(&seen);
     let sign = search.landmark.shape.is_sign() && form.solidity >= FILLED_SOLIDITY;
     let (object, form) = match search.landmark.shape {
@@ -202,7 +204,12 @@ fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
         _ => (seen, form),
     };
     let edge = if sign { border(search, &object) } else { Edge::Plain };
-    measured(search, object, &form, edge)
+    let mut candidate = measured(search, object, &form, edge)?;
+    if is_shadow {
+        candidate.score *= IF_SHADOW;
+        candidate.score_if_covered *= IF_SHADOW;
+    }
+    Some(candidate)
 }
 
 /// A block whose face is another colour within a frame of its own is whole when the frame goes all around, or nearly so:

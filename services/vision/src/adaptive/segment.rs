@@ -7,7 +7,7 @@
 use super::likeness::Likeness;
 use super::palette::{Cluster, levels, palette};
 use super::patch::Patch;
-use super::shadow::{self, Cast};
+use super::shadow::{self, Cast, Shade};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
 
@@ -35,17 +35,29 @@ pub(crate) enum Parts {
     All,
 }
 
+/// An object told from its background.
+pub(crate) struct Segmented {
+    pub(crate) object: Patch,
+    /// Whether it is but the shadow of something on what lies around it.
+    pub(crate) is_shadow: bool,
+}
+
 /// The pixels of the object that `seed` is part of, without the shadow that it casts. The seed's rectangle must leave room
 /// around it.
-pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Parts) -> Option<Patch> {
+pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Parts) -> Option<Segmented> {
     let surfaces = background_colours(frame, seed, &seed.dilated(reach_px(seed)), likeness);
     let object = grown(frame, seed, &surfaces, None, parts)?;
+    // Signs stand above the ground.
     if likeness.face().is_some() {
-        return Some(object);
+        return Some(Segmented { object, is_shadow: false });
     }
-    match shadow::cast(frame, &object, likeness, &surfaces) {
-        Some(cast) => grown(frame, &cast.rest, &surfaces, Some(&cast), parts),
-        None => Some(object),
+    match shadow::shade(frame, &object, likeness, &surfaces) {
+        Shade::None => Some(Segmented { object, is_shadow: false }),
+        Shade::All => Some(Segmented { object, is_shadow: true }),
+        Shade::Part(cast) => {
+            let object = grown(frame, &cast.rest, &surfaces, Some(&cast), parts)?;
+            Some(Segmented { object, is_shadow: false })
+        }
     }
 }
 

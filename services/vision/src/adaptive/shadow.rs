@@ -26,6 +26,8 @@ const LEAST_CONTRAST: f32 = 5.0;
 const LEAST_SEPARATION: f32 = 2.2;
 /// Less than this part of a seed is no shadow worth a thought, and more than that part is no shadow of it.
 const PART: (f32, f32) = (0.015, 0.6);
+/// An object of which so much is shadow is nothing else.
+const NEXT_TO_ALL: f32 = 0.8;
 /// Next to a shadow's edge colours are mixed, px.
 const BLUR_PX: i32 = 2;
 /// Directions are settled in so many rounds.
@@ -52,8 +54,17 @@ impl Cast {
     }
 }
 
-/// The shadow of one of the `surfaces` around it that `seed` holds beside the object.
-pub(super) fn cast(frame: &Frame, seed: &Patch, likeness: &Likeness, surfaces: &[Cluster]) -> Option<Cast> {
+/// What of an object is but a shadow on one of the surfaces around it.
+pub(super) enum Shade {
+    None,
+    /// A part beside the object itself.
+    Part(Cast),
+    /// Next to all: what casts it is elsewhere, or out of the picture.
+    All,
+}
+
+/// The shadow in `seed`, an object as it was found, on one of the `surfaces` around it.
+pub(super) fn shade(frame: &Frame, seed: &Patch, likeness: &Likeness, surfaces: &[Cluster]) -> Shade {
     let own: Vec<[f32; 3]> = likeness.shades().map(unit).collect();
     let all: u32 = surfaces.iter().map(|surface| surface.pixels).sum();
     let large = |surface: &&Cluster| {
@@ -61,69 +72,111 @@ pub(super) fn cast(frame: &Frame, seed: &Patch, likeness: &Likeness, surfaces: &
             && dot(surface.mean, surface.mean) >= LEAST_LIGHT.powi(2)
     };
     let pixels = smoothed(frame, seed);
-    let casts =
-        surfaces.iter().filter(large).filter_map(|surface| of_surface(seed, &pixels, &own, surface.mean));
-    casts.max_by_key(|cast| cast.patch.count())
+    let mut largest: Option<Cast> = None;
+    for surface in surfaces.iter().filter(large) {
+        let surface = Surface { color: surface.mean, line: unit(surface.mean) };
+        let is_cast: Vec<bool> =
+            pixels.iter().map(|pixel| surface.may_be_shaded(pixel.color, &own)).collect();
+        let counted = is_cast.iter().filter(|cast| **cast).count();
+        if counted as f32 >= NEXT_TO_ALL * pixels.len() as f32 {
+            return Shade::All;
+        }
+        let cast = surface.split(&pixels, is_cast).and_then(|split| split.cast(seed, &pixels, &surface));
+        largest = [largest, cast].into_iter().flatten().max_by_key(|cast| cast.patch.count());
+    }
+    largest.map_or(Shade::None, Shade::Part)
 }
 
-fn of_surface(seed: &Patch, pixels: &[Pixel], own: &[[f32; 3]], surface: [f32; 3]) -> Option<Cast> {
-    let light = dot(surface, surface).sqrt();
-    let line = unit(surface);
-    let in_shade = |color: [f32; 3]| (SHADE.0..SHADE.1).contains(&(dot(color, line) / light));
-    let mut is_cast: Vec<bool> = pixels
-        .iter()
-        .map(|pixel| {
-            let off = aside(pixel.color, line);
-            in_shade(pixel.color)
-                && off <= largest_tint(pixel.color)
-                && off + CLEARLY_NEARER < least_aside(pixel.color, own)
-        })
-        .collect();
-    let (mut own, mut shadow) = (own.to_vec(), surface);
-    for _ in 0..ROUNDS {
-        let counted = is_cast.iter().filter(|cast| **cast).count() as f32;
-        if !(PART.0..PART.1).contains(&(counted / pixels.len() as f32)) {
+/// A surface in full light: its colour and the direction of that.
+struct Surface {
+    color: [f32; 3],
+    line: [f32; 3],
+}
+
+impl Surface {
+    /// Whether a colour is darker than the surface, as a shadow on it is.
+    fn is_in_shade(&self, color: [f32; 3]) -> bool {
+        (SHADE.0..SHADE.1).contains(&(dot(color, self.line) / dot(self.color, self.line)))
+    }
+
+    /// Whether it is clearly nearer to the surface's line than to the landmark's.
+    fn may_be_shaded(&self, color: [f32; 3], own: &[[f32; 3]]) -> bool {
+        let off = aside(color, self.line);
+        self.is_in_shade(color)
+            && off <= largest_tint(color)
+            && off + CLEARLY_NEARER < least_aside(color, own)
+    }
+
+    /// Settles what is shadow and what is object from a first guess.
+    fn split(&self, pixels: &[Pixel], mut is_cast: Vec<bool>) -> Option<Split> {
+        let mut colours = None;
+        for _ in 0..ROUNDS {
+            let mean_of = |wanted: bool| {
+                let those = pixels.iter().zip(&is_cast).filter(move |(_, cast)| **cast == wanted);
+                mean(those.map(|(pixel, _)| pixel.color))
+            };
+            let counted = is_cast.iter().filter(|cast| **cast).count() as f32;
+            let (shadow, object) = (mean_of(true), unit(mean_of(false)));
+            let is_part = (PART.0..PART.1).contains(&(counted / pixels.len() as f32));
+            if !is_part
+                || aside(shadow, self.line) > largest_tint(shadow)
+                || aside(shadow, object) < LEAST_CONTRAST
+            {
+                return None;
+            }
+            colours = Some((shadow, object));
+            for (pixel, cast) in pixels.iter().zip(&mut is_cast) {
+                let nearer = aside(pixel.color, unit(shadow)) < aside(pixel.color, object);
+                *cast = nearer && self.is_in_shade(pixel.color);
+            }
+        }
+        colours.map(|(shadow, object)| Split { is_cast, shadow, object })
+    }
+}
+
+/// Which pixels of an object are shadow.
+struct Split {
+    is_cast: Vec<bool>,
+    /// The shadow's colour.
+    shadow: [f32; 3],
+    /// Direction of the object's colour.
+    object: [f32; 3],
+}
+
+impl Split {
+    /// The shadow, where it stands apart from the object and the object is rounder without it.
+    fn cast(&self, seed: &Patch, pixels: &[Pixel], surface: &Surface) -> Option<Cast> {
+        if self.separation(pixels) < LEAST_SEPARATION {
             return None;
         }
-        shadow = mean(pixels.iter().zip(&is_cast).filter(|(_, cast)| **cast).map(|(pixel, _)| pixel.color));
-        let object =
-            mean(pixels.iter().zip(&is_cast).filter(|(_, cast)| !**cast).map(|(pixel, _)| pixel.color));
-        if aside(shadow, line) > largest_tint(shadow) || aside(shadow, unit(object)) < LEAST_CONTRAST {
-            return None;
-        }
-        own = vec![unit(object)];
-        let line = unit(shadow);
-        for (pixel, cast) in pixels.iter().zip(&mut is_cast) {
-            *cast = in_shade(pixel.color) && aside(pixel.color, line) < least_aside(pixel.color, &own);
-        }
+        let mut patch = Patch::empty(seed.rect);
+        let those = pixels.iter().zip(&self.is_cast).filter(|(_, cast)| **cast);
+        those.for_each(|(pixel, _)| patch.set(pixel.x, pixel.y));
+        let patch = patch.opened(1);
+        let rest = remains(seed, &patch)?;
+        let rounder = solidity(&rest) > solidity(seed);
+        rounder.then_some(Cast { patch, rest, shadow: self.shadow, surface: surface.color })
     }
-    if separation(pixels, &is_cast, unit(shadow), &own) < LEAST_SEPARATION {
-        return None;
+
+    /// How far apart object and shadow are by their distances from both lines, over the sum of their standard
+    /// deviations: told by medians, since the pixels on edges are mixtures.
+    fn separation(&self, pixels: &[Pixel]) -> f32 {
+        let line = unit(self.shadow);
+        let of = |wanted: bool| {
+            let those = pixels.iter().zip(&self.is_cast).filter(|(_, cast)| **cast == wanted);
+            let nearer: Vec<f32> =
+                those.map(|(pixel, _)| aside(pixel.color, line) - aside(pixel.color, self.object)).collect();
+            let middle = median(nearer.clone());
+            // Half of a normal distribution lies within 0.67 standard deviations.
+            (middle, median(nearer.into_iter().map(|value| (value - middle).abs()).collect()) / 0.67)
+        };
+        let ((object, object_spread), (shadow, shadow_spread)) = (of(false), of(true));
+        (object - shadow) / (object_spread + shadow_spread).max(0.1)
     }
-    let mut patch = Patch::empty(seed.rect);
-    pixels.iter().zip(&is_cast).filter(|(_, cast)| **cast).for_each(|(pixel, _)| patch.set(pixel.x, pixel.y));
-    let patch = patch.opened(1);
-    let rest = remains(seed, &patch)?;
-    (solidity(&rest) > solidity(seed)).then_some(Cast { patch, rest, shadow, surface })
 }
 
 fn largest_tint(shadow: [f32; 3]) -> f32 {
     LARGEST_TINT * dot(shadow, shadow).sqrt()
-}
-
-/// How far apart object and shadow are by their distances from both lines, over the sum of their standard deviations:
-/// told by medians, since the pixels on edges are mixtures.
-fn separation(pixels: &[Pixel], is_cast: &[bool], line: [f32; 3], own: &[[f32; 3]]) -> f32 {
-    let of = |wanted: bool| {
-        let those = pixels.iter().zip(is_cast).filter(|(_, cast)| **cast == wanted);
-        let nearer: Vec<f32> =
-            those.map(|(pixel, _)| aside(pixel.color, line) - least_aside(pixel.color, own)).collect();
-        let middle = median(nearer.clone());
-        // Half of a normal distribution lies within 0.67 standard deviations.
-        (middle, median(nearer.into_iter().map(|value| (value - middle).abs()).collect()) / 0.67)
-    };
-    let ((object, object_spread), (shadow, shadow_spread)) = (of(false), of(true));
-    (object - shadow) / (object_spread + shadow_spread).max(0.1)
 }
 
 fn median(mut values: Vec<f32>) -> f32 {
