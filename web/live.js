@@ -50,8 +50,8 @@ async function run(camera, stop) {
       if (held && !playback()) return;
     } catch (error) {
       if (stop.aborted) return;
-      if (error instanceof Problem) explain(sentence(error.message));
-      else explain("The service does not answer.");
+      // Once the picture on the screen is old, its age is said instead, anew every moment.
+      if (!isOld()) explain(error instanceof Problem ? sentence(error.message) : "The service does not answer.");
       await pause(500, stop);
     }
   }
@@ -126,14 +126,24 @@ function explain(why) {
   setText(state, why);
 }
 
+/** How long ago the frame on the screen arrived at the service. */
+function shownAgeMs() {
+  const shown = shownPicture();
+  return shown ? shown.ageMs + performance.now() - shown.at : 0;
+}
+
+/** Whether a picture is on the screen that should be live and is not. */
+function isOld() {
+  return !isStill() && shownAgeMs() > STALE_AFTER_MS;
+}
+
 /** Shows what belongs to the picture and is not drawn into it. */
 export function showLive() {
   const now = performance.now();
   times = times.filter((time) => now - time < 2000);
   const shown = shownPicture();
   if (shown) {
-    const ageMs = shown.ageMs + now - shown.at;
-    if (ageMs > STALE_AFTER_MS && !isStill()) explain(`Not live: this picture is ${duration(ageMs / 1000)} old.`);
+    if (isOld()) explain(`Not live: this picture is ${duration(shownAgeMs() / 1000)} old.`);
     const rate = times.length > 1 ? ((times.length - 1) * 1000) / (times[times.length - 1] - times[0]) : null;
     const pace = playback() ? "recorded" : lesson() ? "taken to learn from" : held ? "held" : figure(rate, 0, "fps shown");
     const unseen = known.stillEntry?.registered === false ? " · was not registered" : "";

@@ -1,14 +1,11 @@
 // The page fits a phone and a desk, in light and dark, and can be used without eyes or mouse.
 
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
-import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
+import { found, sticksOut } from "./axe.js";
 import { openBrowser } from "./browser.js";
 import { startDemo } from "./demo.js";
 import { openWatched } from "./watched_page.js";
-
-const AXE = await readFile(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 
 /** @type {Awaited<ReturnType<typeof startDemo>>} */
 let demo;
@@ -25,14 +22,6 @@ after(async () => {
 
 const PHONE = { width: 360, height: 740 };
 const DESK = { width: 1280, height: 800 };
-
-/** What axe finds on the page as it is now. @param {import("playwright-core").Page} page */
-async function found(page) {
-  await page.evaluate(AXE);
-  // @ts-ignore the line above defines axe
-  const { violations } = await page.evaluate(() => window.axe.run());
-  return violations.map((/** @type {any} */ one) => `${one.id}: ${one.nodes.map((/** @type {any} */ node) => node.html).join(" ")}`);
-}
 
 for (const [screen, viewport] of Object.entries({ phone: PHONE, desk: DESK })) {
   for (const colorScheme of /** @type {const} */ (["light", "dark"])) {
@@ -74,8 +63,7 @@ for (const width of [360, 768, 1280, 1920, 3840]) {
   test(`nothing sticks out at ${width} px`, async () => {
     const { page, close } = await openWatched(browser, demo.url, { viewport: { width, height: 900 } });
     await page.locator("#landmarks .result .words").first().waitFor();
-    const sticksOut = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
-    assert.equal(sticksOut, 0);
+    assert.equal(await sticksOut(page), 0);
     await close();
   });
 }
