@@ -26,6 +26,7 @@ try {
   const encodesBefore = await encodes();
   const alone = await cost(follower.pid ?? 0, seconds);
   const encodesAlone = (await encodes()) - encodesBefore;
+  const encodesUnwatched = await encodes();
   const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   let bytes = 0;
   let isFirst = true;
@@ -44,7 +45,9 @@ try {
   const at = (part) => delays[Math.floor((delays.length - 1) * part)]?.toFixed(0);
   console.log(`${width} × ${height} px, ${fps} fps from the camera, ${(await registeredHz()).toFixed(1)} registered`);
   console.log(`shown ${(shown.length / seconds).toFixed(1)} fps; capture to canvas median ${at(0.5)} ms, 95 % ${at(0.95)} ms`);
-  console.log(`follower ${(100 * alone).toFixed(1)} % of a core without the page, ${(100 * watched).toFixed(1)} % with it; ${encodesAlone} encodes without it`);
+  const pageMs = watched.frameMs - alone.frameMs;
+  console.log(`follower ${(100 * alone.cores).toFixed(1)} % of a core without the page, ${(100 * watched.cores).toFixed(1)} % with it; ${encodesAlone} encodes without it, ${(await encodes()) - encodesUnwatched} with it`);
+  console.log(`processor time a frame ${alone.frameMs.toFixed(2)} ms without it, ${watched.frameMs.toFixed(2)} ms with it: at ${fps} fps the page takes ${((pageMs * fps) / 10).toFixed(1)} % of a core`);
   console.log(`${(bytes / 1000).toFixed(0)} kB and ${firstMs.toFixed(0)} ms before the first picture`);
 } finally {
   await browser.close();
@@ -73,20 +76,27 @@ function watch() {
   });
 }
 
-/** Cores that a process uses. @param {number} pid @param {number} seconds */
+/** Cores that a process uses, and its processor time for each frame, ms: a busy machine registers fewer. @param {number} pid @param {number} seconds */
 async function cost(pid, seconds) {
   const ticks = async () => {
     const fields = (await readFile(`/proc/${pid}/stat`, "utf8")).split(") ")[1].split(" ");
     return Number(fields[11]) + Number(fields[12]);
   };
-  const before = await ticks();
+  const [before, framesBefore] = [await ticks(), await counted("waymark_frames_registered_total")];
   await new Promise((next) => setTimeout(next, seconds * 1000));
-  return ((await ticks()) - before) / TICKS_PER_S / seconds;
+  const used = ((await ticks()) - before) / TICKS_PER_S;
+  return { cores: used / seconds, frameMs: (1000 * used) / ((await counted("waymark_frames_registered_total")) - framesBefore) };
 }
 
-async function encodes() {
+/** Views encoded for whoever looks. */
+function encodes() {
+  return counted("waymark_http_encodes_total");
+}
+
+/** @param {string} name of a count of the camera */
+async function counted(name) {
   const text = await (await fetch(`${url}/metrics`)).text();
-  return Number(/waymark_http_encodes_total\{camera="front"\} (\d+)/.exec(text)?.[1] ?? 0);
+  return Number(new RegExp(`${name}\\{camera="front"\\} (\\d+)`).exec(text)?.[1] ?? 0);
 }
 
 async function registeredHz() {
