@@ -5,9 +5,9 @@
 
 use crate::cameras::{Camera, provenance};
 use crate::counters::Refusal;
+use crate::picture_request::PictureRequest;
 use crate::pictures::{Picture, STALE_AFTER};
 use crate::problem::Problem;
-use crate::renditions::PictureRequest;
 use axum::body::{Body, Bytes};
 use axum::http::HeaderValue;
 use axum::http::header::CONTENT_TYPE;

@@ -1,7 +1,7 @@
 //! A picture and what was seen in it, as the two parts of one answer (RFC 7578, which `Response.formData()` of the Fetch
 //! standard reads).
 
-use crate::renditions::Format;
+use crate::picture_request::Format;
 use axum::body::Body;
 use axum::http::HeaderValue;
 use axum::http::header::CONTENT_TYPE;

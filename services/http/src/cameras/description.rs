@@ -2,7 +2,7 @@
 
 use super::RATES_HZ;
 use crate::api::{Operation, integer};
-use crate::renditions::PictureRequest;
+use crate::picture_request::PictureRequest;
 use serde_json::json;
 
 fn at_camera(summary: &'static str) -> Operation {
