@@ -28,6 +28,8 @@ const LEAST_SEPARATION: f32 = 2.2;
 const PART: (f32, f32) = (0.015, 0.6);
 /// An object of which so much is shadow is nothing else.
 const NEXT_TO_ALL: f32 = 0.8;
+/// One pixel of so many tells whether to look closely.
+const GLIMPSE: usize = 3;
 /// Next to a shadow's edge colours are mixed, px.
 const BLUR_PX: i32 = 2;
 /// Directions are settled in so many rounds.
@@ -71,10 +73,19 @@ pub(super) fn shade(frame: &Frame, seed: &Patch, likeness: &Likeness, surfaces: 
         surface.pixels as f32 >= LEAST_SURFACE * all as f32
             && dot(surface.mean, surface.mean) >= LEAST_LIGHT.powi(2)
     };
+    let glimpse: Vec<[f32; 3]> =
+        seed.set_places().step_by(GLIMPSE).map(|place| color_at(frame, seed, place)).collect();
+    let shows = |surface: &Surface| {
+        let shaded = glimpse.iter().filter(|color| surface.may_be_shaded(**color, &own)).count();
+        2.0 * shaded as f32 >= PART.0 * glimpse.len() as f32
+    };
+    let surfaces: Vec<Surface> = surfaces.iter().filter(large).map(Surface::of).filter(shows).collect();
+    if surfaces.is_empty() {
+        return Shade::None;
+    }
     let pixels = smoothed(frame, seed);
     let mut largest: Option<Cast> = None;
-    for surface in surfaces.iter().filter(large) {
-        let surface = Surface { color: surface.mean, line: unit(surface.mean) };
+    for surface in surfaces {
         let is_cast: Vec<bool> =
             pixels.iter().map(|pixel| surface.may_be_shaded(pixel.color, &own)).collect();
         let counted = is_cast.iter().filter(|cast| **cast).count();
@@ -94,6 +105,10 @@ struct Surface {
 }
 
 impl Surface {
+    fn of(cluster: &Cluster) -> Self {
+        Self { color: cluster.mean, line: unit(cluster.mean) }
+    }
+
     /// Whether a colour is darker than the surface, as a shadow on it is.
     fn is_in_shade(&self, color: [f32; 3]) -> bool {
         (SHADE.0..SHADE.1).contains(&(dot(color, self.line) / dot(self.color, self.line)))
@@ -204,14 +219,33 @@ struct Pixel {
 }
 
 fn smoothed(frame: &Frame, seed: &Patch) -> Vec<Pixel> {
-    let level = |x: i32, y: i32| levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32));
-    seed.set_places()
-        .map(|(x, y)| {
-            let near = (y - 1..=y + 1).flat_map(|v| (x - 1..=x + 1).map(move |u| (u, v)));
-            let color = mean(near.filter(|&(u, v)| seed.get(u, v)).map(|(u, v)| level(u, v)));
-            Pixel { x, y, color }
-        })
-        .collect()
+    let pixel = |(x, y)| Pixel { x, y, color: mean_around(frame, seed, x, y) };
+    seed.set_places().map(pixel).collect()
+}
+
+/// Mean colour of a pixel of the seed and those of its eight neighbours that are too.
+fn mean_around(frame: &Frame, seed: &Patch, x: i32, y: i32) -> [f32; 3] {
+    let (mut sum, mut n) = ([0_u32; 3], 0_u32);
+    for v in y - 1..=y + 1 {
+        let mut bits = seed.bits_from(x - 1, v) & 0b111;
+        if bits == 0 {
+            continue;
+        }
+        n += bits.count_ones();
+        let row = frame.row(seed.rect.y + v as u32);
+        while bits != 0 {
+            let column = seed.rect.x as usize + (x - 1 + bits.trailing_zeros() as i32) as usize;
+            for (total, level) in sum.iter_mut().zip(&row[3 * column..3 * column + 3]) {
+                *total += u32::from(*level);
+            }
+            bits &= bits - 1;
+        }
+    }
+    sum.map(|total| total as f32 / n.max(1) as f32)
+}
+
+fn color_at(frame: &Frame, seed: &Patch, (x, y): (i32, i32)) -> [f32; 3] {
+    levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32))
 }
 
 fn mean(colours: impl Iterator<Item = [f32; 3]>) -> [f32; 3] {
