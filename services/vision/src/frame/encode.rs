@@ -2,7 +2,7 @@
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
-use jpeg_encoder::{ColorType, Encoder};
+use jpeg_encoder::{ChromaSubsamplingMethod, ColorType, Encoder};
 
 use super::Frame;
 
@@ -72,7 +72,10 @@ pub fn encode_jpeg(frame: &Frame, quality: Quality) -> Result<Vec<u8>, EncodeErr
     let (columns, rows) =
         (u16::try_from(width).map_err(too_large)?, u16::try_from(height).map_err(too_large)?);
     let mut bytes = Vec::with_capacity(frame.rgb().len() / 8);
-    Encoder::new(&mut bytes, quality.get()).encode(frame.rgb(), columns, rows, ColorType::Rgb)?;
+    let mut encoder = Encoder::new(&mut bytes, quality.get());
+    // By default halved chroma is that of every other pixel, half a pixel off in both directions.
+    encoder.set_chroma_subsampling_method(ChromaSubsamplingMethod::Average);
+    encoder.encode(frame.rgb(), columns, rows, ColorType::Rgb)?;
     Ok(bytes)
 }
 
@@ -110,6 +113,19 @@ mod tests {
             Frame::from_rgb(64, 64, (0..64 * 64 * 3).map(|i| (i * 31 % 201) as u8).collect()).unwrap();
         let size = |quality| encode_jpeg(&frame, Quality::new(quality).unwrap()).unwrap().len();
         assert!(size(10) < size(50) && size(50) < size(100));
+    }
+
+    #[test]
+    fn halved_chroma_stays_in_its_place() {
+        // Red and blue of one brightness: what tells them apart is chroma alone.
+        let stripe = |x: usize| if (21..43).contains(&x) { [200, 40, 40] } else { [90, 60, 220] };
+        let frame = Frame::from_rgb(64, 16, (0..16 * 64).flat_map(|at| stripe(at % 64)).collect()).unwrap();
+        let bytes = encode_jpeg(&frame, Quality::new(80).unwrap()).unwrap();
+        let seen = decode(&bytes, &DecodeLimits::default()).unwrap();
+        let red = |x: u32| (f64::from(seen.pixel(x, 8)[0]) - 90.0) / 110.0;
+        let weight: f64 = (0..64).map(red).sum();
+        let centre = (0..64).map(|x| (f64::from(x) + 0.5) * red(x)).sum::<f64>() / weight;
+        assert!((centre - 32.0).abs() < 0.15, "{centre}");
     }
 
     #[test]
