@@ -58,7 +58,11 @@ fn cut(polygon: &[Point], a: Point, b: Point, side: f64) -> Vec<Point> {
 /// The part of `polygon` inside the rectangle from (0, 0) to (`width`, `height`).
 pub(crate) fn inside_frame(polygon: &[Point], width: f64, height: f64) -> Vec<Point> {
     let corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
-    (0..4).fold(polygon.to_vec(), |rest, i| cut(&rest, corners[i], corners[(i + 1) % 4], 1.0))
+    let mut inside =
+        (0..4).fold(polygon.to_vec(), |rest, i| cut(&rest, corners[i], corners[(i + 1) % 4], 1.0));
+    // Where a long edge meets the border, rounding may leave its end a hair outside.
+    inside.iter_mut().for_each(|[x, y]| (*x, *y) = (x.clamp(0.0, width), y.clamp(0.0, height)));
+    inside
 }
 
 /// Takes the convex `occluder` (turning from x towards y) out of the disjoint convex `pieces`.
