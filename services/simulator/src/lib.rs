@@ -3,7 +3,8 @@
 //! Seen from outside this is a camera: [`Simulator::render`] gives frame after frame, each with the truth about every
 //! named object in it. A scene builds a world (two textured planes, shadows, solids, a vehicle's path) from its seed;
 //! one renderer draws any world: exact perspective, exact edge coverage, exposure swing, shake, motion blur of the
-//! single things, and sensor noise. The truth comes from the same geometry, not from the picture.
+//! single things, and sensor noise; on demand all that makes a film worse. The truth comes from the same geometry, not
+//! from the picture.
 //!
 //! Nothing here has a clock or a thread; the same options and frame number give the same bytes.
 
@@ -22,6 +23,6 @@ mod vector;
 mod world;
 
 pub use camera::Intrinsics;
-pub use options::{OptionsError, SceneKind, SceneOptions};
+pub use options::{Look, OptionsError, SceneKind, SceneOptions};
 pub use simulator::{Rendered, Simulator};
 pub use truth::TrueObject;

@@ -49,8 +49,42 @@ impl FromStr for SceneKind {
     }
 }
 
-/// What to simulate. The text form is `sim:SCENE?seed=3&width=640&height=480&fps=30&vehicle=1&frames=200`, every
-/// parameter optional.
+/// What the pictures look like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Look {
+    /// A good camera: sharp, little noise, the exposure swings by a tenth.
+    #[default]
+    Clean,
+    /// A film from a moving car, chosen by seed: blur of lens and motion mixed in linear light, an exposure that drifts,
+    /// noise, sharpening, JPEG of quality 70 to 85 with halved chroma; the stop sign's road has red kerbs and red cars.
+    Film,
+}
+
+impl Look {
+    /// Every look.
+    pub const ALL: [Self; 2] = [Self::Clean, Self::Film];
+
+    /// The name in a source URI.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Clean => "clean",
+            Self::Film => "film",
+        }
+    }
+}
+
+impl FromStr for Look {
+    type Err = OptionsError;
+
+    fn from_str(name: &str) -> Result<Self, OptionsError> {
+        let unknown = || OptionsError::UnknownLook { got: name.to_owned() };
+        Self::ALL.into_iter().find(|look| look.name() == name).ok_or_else(unknown)
+    }
+}
+
+/// What to simulate. The text form is `sim:SCENE?seed=3&width=640&height=480&fps=30&vehicle=1&frames=200&look=film`,
+/// every parameter optional.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneOptions {
     /// The scene.
@@ -65,6 +99,8 @@ pub struct SceneOptions {
     pub frame_rate_hz: f64,
     /// Frames for one way along the path; then the vehicle drives back, and so on without end.
     pub frames_one_way: u32,
+    /// What its pictures look like.
+    pub look: Look,
 }
 
 /// Why options cannot be simulated.
@@ -82,8 +118,14 @@ pub enum OptionsError {
         /// The name received.
         got: String,
     },
+    /// No look has that name.
+    #[error("simulator parameter look is {got:?}; use one of clean, film")]
+    UnknownLook {
+        /// The name received.
+        got: String,
+    },
     /// No parameter has that name.
-    #[error("simulator parameter {name:?} is unknown; use seed, vehicle, width, height, fps, frames")]
+    #[error("simulator parameter {name:?} is unknown; use seed, vehicle, width, height, fps, frames, look")]
     UnknownParameter {
         /// The name received.
         name: String,
@@ -118,7 +160,7 @@ impl SceneOptions {
             SceneKind::GreenSigns => 360,
         };
         let size = SizePx { width: 640, height: 480 };
-        Self { kind, seed: 1, vehicle: 0, size, frame_rate_hz: 30.0, frames_one_way }
+        Self { kind, seed: 1, vehicle: 0, size, frame_rate_hz: 30.0, frames_one_way, look: Look::Clean }
     }
 
     /// Checks every value against its range.
@@ -142,6 +184,7 @@ impl SceneOptions {
             "height" => self.size.height = number("height", value, HEIGHT)?,
             "fps" => self.frame_rate_hz = number("fps", value, FRAME_RATE_HZ)?,
             "frames" => self.frames_one_way = number("frames", value, FRAMES)?,
+            "look" => self.look = value.parse()?,
             _ => return Err(OptionsError::UnknownParameter { name: name.to_owned() }),
         }
         Ok(())
@@ -166,10 +209,10 @@ impl FromStr for SceneOptions {
 
 impl fmt::Display for SceneOptions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, seed, vehicle, size: SizePx { width, height }, frame_rate_hz, frames_one_way } =
-            self;
+        let Self { kind, seed, vehicle, size: SizePx { width, height }, frame_rate_hz, .. } = self;
         write!(f, "sim:{kind}?seed={seed}&vehicle={vehicle}&width={width}&height={height}")?;
-        write!(f, "&fps={frame_rate_hz}&frames={frames_one_way}")
+        write!(f, "&fps={frame_rate_hz}&frames={}", self.frames_one_way)?;
+        if self.look == Look::Clean { Ok(()) } else { write!(f, "&look={}", self.look.name()) }
     }
 }
 
@@ -220,6 +263,8 @@ mod tests {
         assert_eq!(options.size, SizePx { width: 1280, height: 720 });
         assert_eq!((options.seed, options.vehicle, options.frames_one_way), (3, 1, 200));
         assert_eq!(options.to_string(), text);
+        let film = format!("{text}&look=film");
+        assert_eq!(film.parse::<SceneOptions>().unwrap().to_string(), film);
         assert_eq!("sim:rink".parse(), Ok(SceneOptions::new(SceneKind::Rink)));
     }
 
@@ -229,6 +274,9 @@ mod tests {
         assert!(error("rink").contains("sim:rink"));
         assert!(error("sim:moon").contains("\"moon\"") && error("sim:moon").contains("green-signs"));
         assert!(error("sim:rink?speed=3").contains("\"speed\""));
+        assert!(
+            error("sim:rink?look=old").contains("\"old\"") && error("sim:rink?look=old").contains("film")
+        );
         let width = error("sim:rink?width=20");
         assert!(["width", "\"20\"", "64", "4096"].iter().all(|part| width.contains(part)), "{width}");
         for bad in ["fps=0", "fps=NaN", "fps=inf", "frames=9", "seed=-1", "seed", "vehicle=x", "height=1e3"] {

@@ -2,11 +2,13 @@
 
 pub(crate) mod canvas;
 pub(crate) mod coverage;
+mod film;
 pub(crate) mod planes;
 mod sensor;
 mod sprites;
 
 use canvas::Canvas;
+pub(crate) use film::Film;
 use sensor::Sensor;
 use sprites::Brush;
 
@@ -29,6 +31,8 @@ pub(crate) struct Exposure<'a> {
     pub(crate) gain: [f64; 3],
     /// Number of the frame, which selects its noise.
     pub(crate) index: u64,
+    /// What a film does to it.
+    pub(crate) film: Option<Film>,
 }
 
 /// Draws worlds.
@@ -54,8 +58,13 @@ impl Renderer {
             let poses = poses_for(item, exposure);
             self.brush.draw_item(item, &poses, &mut canvas);
         }
-        self.sensor.expose(exposure.gain, exposure.index, &mut canvas);
-        canvas
+        let Some(film) = exposure.film else {
+            self.sensor.expose(exposure.gain, sensor::FINE_GRAIN_Q2, exposure.index, &mut canvas);
+            return canvas;
+        };
+        film.focus(&mut canvas);
+        self.sensor.expose(exposure.gain, film.grain_q2, exposure.index, &mut canvas);
+        film.developed(canvas)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The scenes: each builds a [`World`] from its seed.
 
+mod film;
 mod green_signs;
 mod lettering;
 mod rink;
@@ -10,13 +11,16 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg32;
 
 use crate::drive::Wave;
-use crate::options::{SceneKind, SceneOptions};
-use crate::simulator::CameraLight;
+use crate::options::{Look, SceneKind, SceneOptions};
+use crate::simulator::Optics;
 use crate::vector::Vec3;
 use crate::world::{Colour, Light, World};
 
+/// Part of the time between two frames during which the shutter is open.
+const SHUTTER: f64 = 0.3;
+
 /// The world of a scene, the same for all vehicles but for their way, and the light as this vehicle's camera sees it.
-pub(crate) fn build(options: &SceneOptions) -> (World, CameraLight) {
+pub(crate) fn build(options: &SceneOptions) -> (World, Optics) {
     let mut dice = Dice::new(options.seed, options.kind as u64);
     let mut vehicle_dice = Dice::new(options.seed, 1_000 + u64::from(options.vehicle));
     let world = match options.kind {
@@ -24,15 +28,21 @@ pub(crate) fn build(options: &SceneOptions) -> (World, CameraLight) {
         SceneKind::StopSign => stop_sign::world(options, &mut dice, &mut vehicle_dice),
         SceneKind::GreenSigns => green_signs::world(options, &mut dice, &mut vehicle_dice),
     };
-    (world, camera_light(&mut vehicle_dice))
+    let optics = optics(&mut vehicle_dice);
+    match options.look {
+        Look::Clean => (world, optics),
+        Look::Film => film::shot(options, world, optics),
+    }
 }
 
 /// A white balance within 4 %, and an exposure that swings by up to 10 % with a flicker of 1 %.
-fn camera_light(dice: &mut Dice) -> CameraLight {
+fn optics(dice: &mut Dice) -> Optics {
     let brightness = dice.within(0.95, 1.05);
-    CameraLight {
+    Optics {
+        shutter: SHUTTER,
         balance: std::array::from_fn(|_| brightness * dice.within(0.97, 1.03)),
         swing: vec![dice.wave(0.05..0.09, 0.15..0.4), dice.wave(0.005..0.01, 3.0..7.0)],
+        film: None,
     }
 }
 

@@ -5,13 +5,10 @@ use vision::Frame;
 use crate::camera::{Camera, Intrinsics};
 use crate::drive::Wave;
 use crate::options::{OptionsError, SceneOptions};
-use crate::render::{Exposure, MOMENTS, Renderer};
+use crate::render::{Exposure, Film, MOMENTS, Renderer};
 use crate::scene;
 use crate::truth::{TrueObject, observe};
 use crate::world::World;
-
-/// Part of the time between two frames during which the shutter is open.
-const SHUTTER: f64 = 0.3;
 
 /// One frame and what is really in it.
 #[derive(Clone, Debug)]
@@ -31,17 +28,21 @@ pub struct Simulator {
     options: SceneOptions,
     intrinsics: Intrinsics,
     world: World,
-    light: CameraLight,
+    optics: Optics,
     renderer: Renderer,
 }
 
 /// How this camera sees light: its own white balance, and an exposure that swings.
 #[derive(Clone, Debug)]
-pub(crate) struct CameraLight {
+pub(crate) struct Optics {
+    /// Part of the time between two frames during which the shutter is open.
+    pub(crate) shutter: f64,
     /// Gain of R, G and B.
     pub(crate) balance: [f64; 3],
     /// Swing of the exposure over time, as a part of the gain.
     pub(crate) swing: Vec<Wave>,
+    /// What a film does to its pictures.
+    pub(crate) film: Option<Film>,
 }
 
 impl Simulator {
@@ -51,13 +52,13 @@ impl Simulator {
     /// When an option is outside its range.
     pub fn new(options: SceneOptions) -> Result<Self, OptionsError> {
         let options = options.validated()?;
-        let (world, light) = scene::build(&options);
+        let (world, optics) = scene::build(&options);
         let camera_seed = options.seed.wrapping_mul(0x2545_f491_4f6c_dd1d) ^ u64::from(options.vehicle);
         Ok(Self {
             options,
             intrinsics: Intrinsics::of_size(options.size),
             world,
-            light,
+            optics,
             renderer: Renderer::new(camera_seed),
         })
     }
@@ -77,14 +78,15 @@ impl Simulator {
     /// Renders frame `frame_index`, counted from 0.
     pub fn render(&mut self, frame_index: u64) -> Rendered {
         let time_s = frame_index as f64 / self.options.frame_rate_hz;
-        let shutter_s = SHUTTER / self.options.frame_rate_hz;
+        let shutter_s = self.optics.shutter / self.options.frame_rate_hz;
         let middle = self.camera_at(time_s);
         let moments: [Camera; MOMENTS] = std::array::from_fn(|moment| {
             self.camera_at(time_s + shutter_s * ((moment as f64 + 0.5) / MOMENTS as f64 - 0.5))
         });
-        let swing = 1.0 + crate::drive::sum(&self.light.swing, time_s);
-        let gain = self.light.balance.map(|channel| channel * swing);
-        let exposure = Exposure { middle: &middle, moments: &moments, gain, index: frame_index };
+        let swing = 1.0 + crate::drive::sum(&self.optics.swing, time_s);
+        let gain = self.optics.balance.map(|channel| channel * swing);
+        let exposure =
+            Exposure { middle: &middle, moments: &moments, gain, index: frame_index, film: self.optics.film };
         Rendered {
             frame: self.renderer.render(&self.world, exposure).into_frame(),
             truth: observe(&self.world, &middle),

@@ -90,6 +90,16 @@ impl Face {
 }
 
 impl Item {
+    /// The same, so much higher above the ground, metres.
+    pub(crate) fn raised(mut self, height_m: f64) -> Self {
+        let up = Vec3::new(0.0, 0.0, height_m);
+        self.centre = self.centre + up;
+        if let Body::Solid(faces) = &mut self.body {
+            faces.iter_mut().flat_map(|face| &mut face.corners).for_each(|corner| *corner = *corner + up);
+        }
+        self
+    }
+
     /// The convex outline on the picture, before the frame cuts it; empty when it is behind the camera.
     pub(crate) fn silhouette(&self, camera: &Camera) -> Vec<Point> {
         if camera.depth_m(self.centre) < NEAR_M {

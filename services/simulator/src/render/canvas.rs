@@ -11,6 +11,12 @@ pub(crate) struct Canvas {
     rgb: Vec<u8>,
 }
 
+impl From<Frame> for Canvas {
+    fn from(frame: Frame) -> Self {
+        Self { size: frame.size(), rgb: frame.rgb().to_vec() }
+    }
+}
+
 impl Canvas {
     pub(crate) fn new(size: SizePx) -> Self {
         Self { size, rgb: vec![0; 3 * size.width as usize * size.height as usize] }

@@ -13,6 +13,8 @@ const TABLE_LENGTH: usize = 1 << 16;
 const READ_SIGMA: f32 = 1.8;
 /// Growth of the noise with the level.
 const SHOT_SIGMA_PER_LEVEL: f32 = 0.008;
+/// Noise as stated, in quarters.
+pub(crate) const FINE_GRAIN_Q2: i16 = 4;
 /// The greatest gain that the 16-bit arithmetic carries.
 const MOST_GAIN: f64 = 4.0;
 
@@ -29,26 +31,27 @@ impl Sensor {
         Self { noise: (0..TABLE_LENGTH).map(|_| gaussian(&mut random)).collect(), seed }
     }
 
-    /// Multiplies each channel by its gain and adds the noise of frame `index`.
-    pub(crate) fn expose(&self, gain: [f64; 3], index: u64, canvas: &mut Canvas) {
+    /// Multiplies each channel by its gain and adds the noise of frame `index`, `grain_q2` quarters of the usual, at most
+    /// 12.
+    pub(crate) fn expose(&self, gain: [f64; 3], grain_q2: i16, index: u64, canvas: &mut Canvas) {
         let mut random = Pcg32::seed_from_u64(self.seed ^ index.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let samples = 3 * canvas.size().width as usize;
         let gain_q10 = gain.map(|factor| (factor.clamp(0.0, MOST_GAIN) * 1_024.0).round() as u16);
         let gain_q10: Vec<u16> = gain_q10.into_iter().cycle().take(samples).collect();
         for row in canvas.rows_mut() {
             let start = random.random_range(0..TABLE_LENGTH - samples);
-            expose_row(row, &gain_q10, &self.noise[start..start + samples]);
+            expose_row(row, &gain_q10, grain_q2, &self.noise[start..start + samples]);
         }
     }
 }
 
 /// In 16 bits throughout, which lets the compiler take eight samples at a time on any x86-64.
-fn expose_row(row: &mut [u8], gain_q10: &[u16], noise: &[i8]) {
+fn expose_row(row: &mut [u8], gain_q10: &[u16], grain_q2: i16, noise: &[i8]) {
     const READ_Q4: i16 = (READ_SIGMA * 16.0) as i16;
     const SHOT_Q12: i16 = (SHOT_SIGMA_PER_LEVEL * 4_096.0) as i16;
     for ((sample, &gain), &noise) in row.iter_mut().zip(gain_q10).zip(noise) {
         let level_q2 = ((u32::from(u16::from(*sample) << 8) * u32::from(gain)) >> 16) as i16;
-        let sigma_q4 = READ_Q4 + (((level_q2 >> 2).min(255) * SHOT_Q12) >> 8);
+        let sigma_q4 = ((READ_Q4 + (((level_q2 >> 2).min(255) * SHOT_Q12) >> 8)) * grain_q2) >> 2;
         let noise_q2 = (i16::from(noise) * sigma_q4) >> 7;
         *sample = ((level_q2 + noise_q2 + 2) >> 2).clamp(0, 255) as u8;
     }
@@ -114,7 +117,7 @@ mod tests {
         for level in [0_u8, 60, 200] {
             let mut canvas = Canvas::new(SizePx { width: 320, height: 200 });
             canvas.rgb_mut().fill(level);
-            sensor.expose([1.0; 3], 5, &mut canvas);
+            sensor.expose([1.0; 3], FINE_GRAIN_Q2, 5, &mut canvas);
             let count = canvas.rgb().len() as f64;
             let mean = canvas.rgb().iter().map(|&v| f64::from(v)).sum::<f64>() / count;
             let variance = canvas.rgb().iter().map(|&v| (f64::from(v) - mean).powi(2)).sum::<f64>() / count;

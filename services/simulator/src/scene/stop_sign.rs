@@ -8,6 +8,9 @@ use crate::solids::{Board, rectangle};
 use crate::vector::Vec3;
 use crate::world::{Body, Colour, Item, Layer, Light, Shadow, World};
 
+/// Red as kerbs and cars have it.
+const PAINT: Colour = [176.0, 38.0, 42.0];
+
 /// Width of the sign over its flats, metres (the common 30 inch sign).
 const SIGN_M: f64 = 0.75;
 /// How far the car drives, and how far from the sign it ends; metres.
@@ -99,6 +102,44 @@ fn clutter(dice: &mut Dice, light: &Light, road: Road) -> Vec<Item> {
     for side in [-1.0, 1.0] {
         let foot = Vec3::new(dice.within(55.0, 90.0), side * dice.within(11.0, 17.0), 0.0);
         items.extend(roadside::house(dice, light, foot));
+    }
+    items
+}
+
+/// What a real street adds: kerbs painted red on both sides all the way to the sign, and parked red cars.
+pub(super) fn street(dice: &mut Dice) -> Vec<Item> {
+    let light = dice.light(0.66);
+    let mut items = Vec::new();
+    for (side_m, from_m) in [(-2.1, dice.within(8.0, 20.0)), (6.3, dice.within(4.0, 30.0))] {
+        for piece in 0..12 {
+            let foot = Vec3::new(from_m + 3.0 * f64::from(piece), side_m, 0.0);
+            let red = dice.tinted(PAINT, 14.0);
+            items.push(roadside::block(foot, Vec3::new(2.9, 0.25, 0.15), red, &light));
+        }
+    }
+    for _ in 0..dice.within(1.0, 4.0) as usize {
+        let side_m = if dice.chance(0.6) { dice.within(7.6, 9.0) } else { -dice.within(5.5, 7.5) };
+        let foot = Vec3::new(dice.within(15.0, 70.0), side_m, 0.0);
+        items.extend(car(dice, &light, foot));
+    }
+    items
+}
+
+/// A body, a cabin with dark windows, and wheels.
+fn car(dice: &mut Dice, light: &Light, foot: Vec3) -> Vec<Item> {
+    let paint = dice.tinted([186.0, 28.0, 34.0], 16.0);
+    let at = |x: f64, y: f64, z: f64| foot + Vec3::new(x, y, z);
+    let raised = |from: Vec3, size_m: Vec3, colour: Colour| {
+        let item = roadside::block(Vec3::new(from.x, from.y, 0.0), size_m, colour, light);
+        item.raised(from.z)
+    };
+    let mut items = vec![
+        raised(at(0.0, 0.0, 0.3), Vec3::new(4.2, 1.75, 0.55), paint),
+        raised(at(0.3, 0.0, 0.85), Vec3::new(2.1, 1.55, 0.42), [38.0, 42.0, 48.0]),
+        raised(at(0.4, 0.0, 1.27), Vec3::new(1.7, 1.45, 0.08), paint),
+    ];
+    for (x, y) in [(-1.4, -0.8), (-1.4, 0.8), (1.4, -0.8), (1.4, 0.8)] {
+        items.push(raised(at(x, y, 0.0), Vec3::new(0.6, 0.2, 0.6), [28.0, 28.0, 30.0]));
     }
     items
 }
