@@ -7,14 +7,17 @@
 mod cells;
 mod chunk;
 mod exact;
+mod index;
 mod lane;
 mod lanes;
+mod lattice;
 mod mesh;
 mod planes;
 mod powers;
 mod ranges;
 mod refute;
 mod running;
+mod shared;
 mod sieve;
 mod sub_blocks;
 mod sums;
@@ -36,6 +39,7 @@ use exact::{Area, BLOCK_PX, Question, Scratch, Test};
 use lane::{MEDIUM_SAMPLES, Medium, NARROW_SAMPLES, Narrow, Precision, Wide};
 use mesh::Mesh;
 use refute::{Doubt, Refutation, Refute, Refuter};
+use shared::{Place, See, Shared};
 use sieve::{Levels, Sieve, Sift};
 use sure::{Proof, Prove, Sure};
 use survey::{Ask, Survey, Take};
@@ -68,7 +72,10 @@ pub struct Masker {
     levels: Vec<Levels>,
     sieve: Sieve,
     survey: Survey,
-    shared: Vec<Survey>,
+    /// What several landmarks share, grid by grid.
+    shared: Vec<Shared>,
+    /// For each number of a landmark where it has its share: in which of those, and there.
+    places: Vec<Option<(usize, Place)>>,
     cells: Cells,
     /// Where windows may match.
     areas: Vec<Area>,
@@ -104,35 +111,54 @@ impl Masker {
         mask: &mut BitMask,
         probe: &mut P,
     ) {
-        self.forget();
-        self.find_shared(frame, grid, landmark, mask, probe);
+        self.find_by(None, frame, grid, landmark, mask, probe);
     }
 
-    /// Looks over `frame` once for each grid that several landmarks are looked for on. Until [`forget`](Self::forget),
-    /// [`find_shared`](Self::find_shared) takes what was seen for what is in its frame.
-    pub(crate) fn share(&mut self, frame: &Frame, grids: &(impl Iterator<Item = DoubledGrid> + Clone)) {
-        self.forget();
+    /// Looks over `frame` once for each grid that several landmarks are looked for on. Each landmark comes with a number, by
+    /// which [`find_shared`](Self::find_shared) knows it until the next call.
+    pub(crate) fn share<'l>(
+        &mut self,
+        frame: &Frame,
+        sought: &(impl Iterator<Item = (usize, DoubledGrid, &'l Landmark)> + Clone),
+    ) {
+        self.shared.iter_mut().for_each(Shared::forget);
+        self.places.clear();
         let mut taken = 0;
-        for grid in grids.clone() {
-            let surveyed = self.shared[..taken].iter().any(|survey| survey.of(&grid).is_some());
-            let sharing = || grids.clone().filter(|other| *other == grid).count();
-            let Some(mesh) = (!surveyed).then(|| shared_mesh(&grid, sharing())).flatten() else { continue };
+        for (_, grid, _) in sought.clone() {
+            let alike = || sought.clone().filter(|(_, other, _)| *other == grid);
+            let seen = self.shared[..taken].iter().any(|shared| shared.mesh_of(&grid).is_some());
+            let Some(mesh) = (!seen).then(|| shared_mesh(&grid, alike().count())).flatten() else { continue };
             if taken == self.shared.len() {
-                self.shared.push(Survey::default());
+                self.shared.push(Shared::default());
             }
-            self.lanes.run(Take { survey: &mut self.shared[taken], frame, grid: &grid, mesh });
+            self.shared[taken].begin(grid, mesh);
+            for (number, _, landmark) in alike() {
+                self.accept(&grid, landmark);
+                self.places.resize(self.places.len().max(number + 1), None);
+                self.places[number] = self.shared[taken].add(&self.accepted).map(|place| (taken, place));
+            }
+            self.lanes.run(See { shared: &mut self.shared[taken], frame });
             taken += 1;
         }
     }
 
-    /// Ends what [`share`](Self::share) began.
-    pub(crate) fn forget(&mut self) {
-        self.shared.iter_mut().for_each(Survey::forget);
-    }
-
-    /// As [`find`](Self::find), by what was shared where that is of this grid.
+    /// As [`find`](Self::find), for the landmark that [`share`](Self::share) had by that number for this frame and grid.
     pub(crate) fn find_shared<P: StageProbe>(
         &mut self,
+        number: usize,
+        frame: &Frame,
+        grid: &DoubledGrid,
+        landmark: &Landmark,
+        mask: &mut BitMask,
+        probe: &mut P,
+    ) {
+        let place = self.places.get(number).copied().flatten();
+        self.find_by(place, frame, grid, landmark, mask, probe);
+    }
+
+    fn find_by<P: StageProbe>(
+        &mut self,
+        place: Option<(usize, Place)>,
         frame: &Frame,
         grid: &DoubledGrid,
         landmark: &Landmark,
@@ -141,8 +167,12 @@ impl Masker {
     ) {
         probe.begin(Stage::Statistics);
         mask.reset(grid.mask_width(), grid.mask_height());
-        self.accept(grid, landmark);
-        self.find_areas(frame, grid);
+        self.areas.clear();
+        self.undecided.clear();
+        if place.is_none_or(|(shared, place)| self.shared[shared].may_match(place)) {
+            self.accept(grid, landmark);
+            self.find_areas(place, frame, grid);
+        }
         probe.end(Stage::Statistics);
         probe.begin(Stage::Mask);
         self.test_areas(frame, grid, mask);
@@ -156,13 +186,11 @@ impl Masker {
     }
 
     /// Where windows may match.
-    fn find_areas(&mut self, frame: &Frame, grid: &DoubledGrid) {
-        self.areas.clear();
-        self.undecided.clear();
+    fn find_areas(&mut self, place: Option<(usize, Place)>, frame: &Frame, grid: &DoubledGrid) {
         if self.accepted.is_empty() {
             return;
         }
-        if let Some(mesh) = self.look(frame, grid)
+        if let Some(mesh) = self.look(place, frame, grid)
             && self.cells.alive_share() <= DENSE_SHARE
         {
             let rows = |row| mesh.mask_rows(row, grid.mask_height());
@@ -175,10 +203,11 @@ impl Masker {
 
     /// Sets the cells that may match, by a shared survey, by the sieve, or by a survey where the sieve leaves much;
     /// `None` for windows too small for any of them.
-    fn look(&mut self, frame: &Frame, grid: &DoubledGrid) -> Option<Mesh> {
-        let shared = self.shared.iter().enumerate().find_map(|(at, survey)| Some((at, survey.of(grid)?)));
-        if let Some((at, mesh)) = shared {
-            self.ask(frame, grid, mesh, Some(at));
+    fn look(&mut self, place: Option<(usize, Place)>, frame: &Frame, grid: &DoubledGrid) -> Option<Mesh> {
+        if let Some((shared, place)) = place {
+            let mesh = self.shared[shared].mesh_of(grid)?;
+            self.shared[shared].tell(place, &mut self.cells);
+            self.refute(frame, grid, mesh, Some(shared));
             return Some(mesh);
         }
         let mesh = Mesh::of_single_rows(grid.window())?;
@@ -192,16 +221,10 @@ impl Masker {
         }
         let mesh = Mesh::of_sub_blocks(grid.window())?;
         self.lanes.run(Take { survey: &mut self.survey, frame, grid, mesh });
-        self.ask(frame, grid, mesh, None);
-        Some(mesh)
-    }
-
-    /// Sets the cells that may match by a survey: a shared one, or our own.
-    fn ask(&mut self, frame: &Frame, grid: &DoubledGrid, mesh: Mesh, shared: Option<usize>) {
         self.average(mesh, grid);
-        let survey = shared.map_or(&mut self.survey, |at| &mut self.shared[at]);
-        self.lanes.run(Ask { survey, shades: &self.averages, cells: &mut self.cells });
-        self.refute(frame, grid, mesh, shared);
+        self.lanes.run(Ask { survey: &mut self.survey, shades: &self.averages, cells: &mut self.cells });
+        self.refute(frame, grid, mesh, None);
+        Some(mesh)
     }
 
     /// Takes the cells from those that may match whose colours look as if they did not, and adds to the undecided areas
@@ -211,8 +234,8 @@ impl Masker {
         if self.cells.all_dead() {
             return;
         }
-        let survey = shared.map_or(&self.survey, |at| &self.shared[at]);
-        let numbers = survey.ranges().doubt(&accepted.means(grid.samples()), &self.cells, &mut self.doubts);
+        let ranges = shared.map_or(self.survey.ranges(), |at| self.shared[at].ranges());
+        let numbers = ranges.doubt(&accepted.means(grid.samples()), &self.cells, &mut self.doubts);
         for doubt in Doubt::ALL.into_iter().filter(|doubt| numbers & 1 << doubt.number() != 0) {
             let Some(refutation) = Refutation::new(doubt, accepted, grid) else { continue };
             self.doubted.take_from(&mut self.cells, &self.doubts, doubt.number());
@@ -236,6 +259,9 @@ impl Masker {
     }
 
     fn test_areas(&mut self, frame: &Frame, grid: &DoubledGrid, mask: &mut BitMask) {
+        if self.areas.is_empty() && self.undecided.is_empty() {
+            return;
+        }
         self.prove_areas(frame, grid, mask);
         self.undecided.append(&mut self.areas);
         let (lanes, areas) = (self.lanes, &self.undecided);
@@ -290,81 +316,4 @@ fn test<P: Precision>(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geometry::RectPx;
-    use crate::landmark::{ColorStats, Digest, ShapeClass, WindowPx};
-    use crate::probe::NoProbe;
-    use crate::reference;
-    use crate::statistics::WindowSums;
-    use proptest::prelude::*;
-
-    fn landmark(window_px: WindowPx, shades: Vec<ColorStats>, tolerance: ColorStats) -> Landmark {
-        Landmark {
-            id: "test".into(),
-            revision: 1,
-            window_px,
-            shades,
-            tolerance,
-            shape: ShapeClass::Any,
-            size_m: None,
-            digest: Digest::default(),
-        }
-    }
-
-    /// Frames of a few flat patches with a little noise, so that masks are neither empty nor full.
-    fn frames() -> impl Strategy<Value = Frame> {
-        (1u32..70, 1u32..40, any::<u64>(), 0u8..9).prop_map(|(width, height, seed, noise)| {
-            let mut state = seed | 1;
-            let mut next = move || {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (state >> 40) as u8
-            };
-            let colours: Vec<[u8; 3]> = (0..3).map(|_| [next(), next(), next()]).collect();
-            let edge = (u32::from(next()) % width, u32::from(next()) % height);
-            let pixel = |x, y| colours[usize::from(x > edge.0) + usize::from(y > edge.1)];
-            let rgb = (0..height).flat_map(|y| (0..width).flat_map(move |x| pixel(x, y)).collect::<Vec<_>>());
-            let mut noisy = || if noise == 0 { 0 } else { next() % noise };
-            let rgb =
-                rgb.collect::<Vec<_>>().into_iter().map(|level| level.saturating_add(noisy())).collect();
-            Frame::from_rgb(width, height, rgb).unwrap()
-        })
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(400))]
-
-        #[test]
-        fn every_variant_equals_the_definition(
-            frame in frames(), width in 1u16..=32, height in 1u16..=32,
-            at in (0.0f32..1.0, 0.0f32..1.0), second in (0.0f32..1.0, 0.0f32..1.0), off in -1.2f32..1.2,
-            mean in 0.0f32..60.0, variance in 0.0f32..400.0, shades in 1usize..=2,
-        ) {
-            let window = WindowPx { width, height };
-            let region = RectPx::whole(frame.size());
-            let Some(grid) = DoubledGrid::new(region, window) else {
-                return Ok(());
-            };
-            let shade = |at: (f32, f32)| {
-                let place = |fraction: f32, most: u32| (fraction * most as f32) as u32;
-                WindowSums::at(&frame, &grid, place(at.0, grid.mask_width()), place(at.1, grid.mask_height())).stats()
-            };
-            let mut shades = [shade(at), shade(second)][..shades].to_vec();
-            // Colours near those of the frame are the ones that need proof.
-            shades[0].mean[usize::from(window.width % 3)] += off * mean;
-            let landmark = landmark(window, shades, ColorStats::uniform(mean, variance));
-            let expected = reference::mask(&frame, region, &landmark).unwrap();
-            for lanes in Lanes::available() {
-                let mut mask = BitMask::default();
-                Masker::with_lanes(lanes).find(&frame, &grid, &landmark, &mut mask, &mut NoProbe);
-                prop_assert!(mask == expected, "{} differs", lanes.name());
-                for sharing in [SHARED_BY, SHARED_BY_MANY] {
-                    let mut masker = Masker::with_lanes(lanes);
-                    masker.share(&frame, &std::iter::repeat_n(grid, sharing));
-                    masker.find_shared(&frame, &grid, &landmark, &mut mask, &mut NoProbe);
-                    prop_assert!(mask == expected, "{} differs when {sharing} share", lanes.name());
-                }
-            }
-        }
-    }
-}
+mod tests;

@@ -68,9 +68,16 @@ impl Workspace {
         Self { masker, ..Self::default() }
     }
 
+    /// As [`recycle`](Self::recycle), one of them.
+    pub(crate) fn recycle_sighting(&mut self, sighting: Sighting) {
+        if self.spare.len() < MOST_CANDIDATES {
+            self.spare.push(sighting);
+        }
+    }
+
     /// Takes back what [`register`] gave, so that the next one need not ask for memory.
     pub fn recycle(&mut self, mut sightings: Vec<Sighting>) {
-        self.spare.extend(sightings.drain(..).take(MOST_CANDIDATES.saturating_sub(self.spare.len())));
+        sightings.drain(..).for_each(|sighting| self.recycle_sighting(sighting));
         if self.spare_lists.len() < MOST_CANDIDATES {
             self.spare_lists.push(sightings);
         }
@@ -96,8 +103,7 @@ pub fn register<P: StageProbe>(
     workspace: &mut Workspace,
     probe: &mut P,
 ) -> Result<Vec<Sighting>, Miss> {
-    workspace.masker.forget();
-    register_shared(frame, landmark, request, workspace, probe)
+    register_by(None, frame, landmark, request, workspace, probe)
 }
 
 /// As [`register`] for each of `landmarks` in turn; passes over the frame are shared by those that have the same window.
@@ -111,19 +117,22 @@ pub fn register_all<'l, P: StageProbe>(
     probe: &mut P,
     mut each: impl FnMut(usize, Result<Vec<Sighting>, Miss>, &mut Workspace),
 ) {
-    let grids = landmarks.clone().filter_map(|landmark| grid(frame, landmark, request).ok());
+    let sought = landmarks.clone().enumerate().filter_map(|(number, landmark)| {
+        let grid = grid(frame, landmark, request).ok()?;
+        Some((number, grid, landmark))
+    });
     probe.begin(Stage::Statistics);
-    workspace.masker.share(frame, &grids);
+    workspace.masker.share(frame, &sought);
     probe.end(Stage::Statistics);
-    for (at, landmark) in landmarks.enumerate() {
-        let found = register_shared(frame, landmark, request, workspace, probe);
-        each(at, found, workspace);
+    for (number, landmark) in landmarks.enumerate() {
+        let found = register_by(Some(number), frame, landmark, request, workspace, probe);
+        each(number, found, workspace);
     }
-    workspace.masker.forget();
 }
 
-/// As [`register`], by what the workspace has seen of this frame already.
-fn register_shared<P: StageProbe>(
+/// As [`register`], by what the workspace has seen of this frame already where the landmark has a number there.
+fn register_by<P: StageProbe>(
+    number: Option<usize>,
     frame: &Frame,
     landmark: &Landmark,
     request: &Request<'_>,
@@ -131,7 +140,11 @@ fn register_shared<P: StageProbe>(
     probe: &mut P,
 ) -> Result<Vec<Sighting>, Miss> {
     let grid = grid(frame, landmark, request)?;
-    workspace.masker.find_shared(frame, &grid, landmark, &mut workspace.mask, probe);
+    let Workspace { masker, mask, .. } = &mut *workspace;
+    match number {
+        Some(number) => masker.find_shared(number, frame, &grid, landmark, mask, probe),
+        None => masker.find(frame, &grid, landmark, mask, probe),
+    }
     staged(probe, Stage::Components, || workspace.components.find(&workspace.mask));
     choose_candidates(&workspace.components, &mut workspace.candidates);
     let mut sightings = workspace.spare_lists.pop().unwrap_or_default();

@@ -11,18 +11,16 @@ pub(super) const WIDTH: usize = 32;
 /// A value for each of 32 neighbouring columns.
 pub(super) type Chunk<T> = [T; WIDTH];
 
-/// The chunk that begins at column `x`.
+/// A row as chunks, for a loop that needs no bounds checks. Rows are whole chunks long.
 #[inline(always)]
-pub(super) fn load<T: Copy + Default>(row: &[T], x: usize) -> Chunk<T> {
-    let mut chunk = [T::default(); WIDTH];
-    chunk.copy_from_slice(&row[x..x + WIDTH]);
-    chunk
+pub(super) fn chunks<T>(row: &[T]) -> &[Chunk<T>] {
+    row.as_chunks().0
 }
 
-/// Puts a chunk back at column `x`.
+/// As [`chunks`], to be written.
 #[inline(always)]
-pub(super) fn store<T: Lane>(row: &mut [T], x: usize, chunk: Chunk<T>) {
-    row[x..x + WIDTH].copy_from_slice(&chunk);
+pub(super) fn chunks_mut<T>(row: &mut [T]) -> &mut [Chunk<T>] {
+    row.as_chunks_mut().0
 }
 
 /// `with` of every column of both.
@@ -43,6 +41,16 @@ pub(super) fn join<T: Copy, U: Copy, V: Copy + Default>(
 #[inline(always)]
 pub(super) fn add<T: Lane>(left: Chunk<T>, right: Chunk<T>) -> Chunk<T> {
     join(left, right, T::plus)
+}
+
+/// Whether any column's lowest bit is set.
+#[inline(always)]
+pub(super) fn any<T: Lane>(chunk: &Chunk<T>) -> bool {
+    let mut any = T::default();
+    for value in chunk {
+        any = any.or(*value);
+    }
+    any.lowest() != 0
 }
 
 /// The lowest bits of all columns, the first column's lowest.

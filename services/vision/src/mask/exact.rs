@@ -129,7 +129,7 @@ impl<P: Precision> Scratch<P> {
             for row in DoubledGrid::pixels_under(y, side) {
                 self.planes.read(question.frame, question.grid, row);
             }
-            self.sums.begin(y, &self.planes, &weighted_rows(y, side), level);
+            self.sums.begin(y, &self.planes, weighted_rows(y, side), level);
         }
     }
 
@@ -145,7 +145,7 @@ impl<P: Precision> Scratch<P> {
             });
         } else {
             let of = |level| samples.times(square(level));
-            self.squares.begin(y, &self.planes, &weighted_rows(y, side), of);
+            self.squares.begin(y, &self.planes, weighted_rows(y, side), of);
         }
     }
 
@@ -159,17 +159,18 @@ impl<P: Precision> Scratch<P> {
                 let from_middle = |sum: u32| i64::from(sum) - MIDDLE_LEVEL * samples;
                 P::sums(from_middle(bounds.low), from_middle(bounds.high))
             });
+            let windows = [0, 1, 2].map(|channel| self.sums.windows(channel).map(|sums| &sums[..blocks]));
             for block in 0..blocks {
                 let mut matching = [[P::Sum::from_i64(-1); WIDTH]; 2];
-                for (channel, within) in within.iter().enumerate() {
-                    let windows = self.sums.windows(channel, WIDTH * block);
-                    for (matching, windows) in matching.iter_mut().zip(windows) {
-                        *matching = join(*matching, windows, |so_far, sum| so_far.and(within.holds(sum)));
+                for (windows, within) in windows.iter().zip(&within) {
+                    for (matching, sums) in matching.iter_mut().zip(windows) {
+                        *matching = join(*matching, sums[block], |so_far, sum| so_far.and(within.holds(sum)));
                     }
                 }
-                let [first, second] = matching;
-                let matching = [chunk::pack(first), chunk::pack(second)];
-                if matching != [0; 2] {
+                // Most rows have none, and packing costs as much as the rest.
+                if matching.iter().any(chunk::any) {
+                    let [first, second] = matching;
+                    let matching = [chunk::pack(first), chunk::pack(second)];
                     self.pending.push(Pending { block, shade, matching });
                 }
             }
@@ -183,16 +184,18 @@ impl<P: Precision> Scratch<P> {
             let mut matching: [Chunk<P::Spread>; 2] = [[P::Spread::from_i64(-1); WIDTH]; 2];
             for (channel, bounds) in question.accepted[shade].spread.iter().enumerate() {
                 let within = P::spreads(bounds.low as i64, bounds.high as i64);
-                let sums = self.sums.windows(channel, WIDTH * block);
-                let squares = self.squares.windows(channel, WIDTH * block);
-                for ((matching, sums), squares) in matching.iter_mut().zip(sums).zip(squares) {
-                    let spreads = join(sums, squares, |sum, squares| squares.minus(P::square(sum)));
+                let windows = self.sums.windows(channel).into_iter().zip(self.squares.windows(channel));
+                for (matching, (sums, squares)) in matching.iter_mut().zip(windows) {
+                    let spreads =
+                        join(sums[block], squares[block], |sum, squares| squares.minus(P::square(sum)));
                     *matching = join(*matching, spreads, |so_far, spread| so_far.and(within.holds(spread)));
                 }
             }
             let [first, second] = matching;
             let matching = [chunk::pack(first) & by_means[0], chunk::pack(second) & by_means[1]];
-            set(mask, y, first_word + block as u32, matching);
+            if matching != [0; 2] {
+                set(mask, y, first_word + block as u32, matching);
+            }
         }
     }
 }
@@ -211,7 +214,7 @@ fn leaving(y: u32, side: u16) -> u32 {
 
 /// The rows of pixels under the windows of mask row `y`, each with its samples.
 #[inline(always)]
-fn weighted_rows(y: u32, side: u16) -> impl Iterator<Item = (u32, u32)> + Clone {
+fn weighted_rows(y: u32, side: u16) -> impl Iterator<Item = (u32, u32)> {
     DoubledGrid::pixels_under(y, side).map(move |row| (row, DoubledGrid::samples_on(row, y, side)))
 }
 

@@ -10,6 +10,7 @@ pub(super) trait Lane: Copy + Default {
     /// All bits set where `self <= most`, else none.
     fn at_most(self, most: Self) -> Self;
     fn and(self, other: Self) -> Self;
+    fn or(self, other: Self) -> Self;
     /// The lowest bit.
     fn lowest(self) -> u8;
 }
@@ -40,6 +41,10 @@ macro_rules! lane {
             #[inline(always)]
             fn and(self, other: Self) -> Self {
                 self & other
+            }
+            #[inline(always)]
+            fn or(self, other: Self) -> Self {
+                self | other
             }
             #[inline(always)]
             fn lowest(self) -> u8 {

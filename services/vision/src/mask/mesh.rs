@@ -41,9 +41,7 @@ enum Look {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Mesh {
     look: Look,
-    /// Size of a sub-block.
-    width_px: u32,
-    height_px: u32,
+    sub_block: SubBlock,
     row_step: u32,
     /// Bands in a row of cells.
     together: u32,
@@ -55,18 +53,17 @@ impl Mesh {
     pub(super) fn of_single_rows(window: WindowPx) -> Option<Self> {
         let whole = |side| Some(DoubledGrid::whole_pixels(side)).filter(|&pixels| pixels > 0);
         let (width, height) = (whole(window.width)?, whole(window.height)?);
-        let width_px = 1 << width.ilog2().min(MOST_HALVINGS);
-        Some(Self { look: Look::Rows, width_px, height_px: 1, row_step: height, together: 1 })
+        let sub_block = SubBlock { width_px: side_within(width), height_px: 1 };
+        Some(Self { look: Look::Rows, sub_block, row_step: height, together: 1 })
     }
 
     /// Sub-blocks of several rows, whose extremes over a cell are looked at: they see nearly every pixel, and prove more.
     pub(super) fn of_sub_blocks(window: WindowPx) -> Option<Self> {
         let (width, height) = aligned(window)?;
-        let side = |pixels: u32| 1 << pixels.ilog2().min(MOST_HALVINGS);
-        let (width_px, height_px) = (side(width), side(height));
-        let row_step = height - height_px + 1;
+        let sub_block = SubBlock { width_px: side_within(width), height_px: side_within(height) };
+        let row_step = height - sub_block.height_px + 1;
         let together = CELL_ROWS.div_ceil(row_step);
-        Some(Self { look: Look::SubBlocks, width_px, height_px, row_step, together })
+        Some(Self { look: Look::SubBlocks, sub_block, row_step, together })
     }
 
     /// Whole windows, whose extremes over a cell are looked at; `None` unless all windows are means of those that start
@@ -74,17 +71,13 @@ impl Mesh {
     pub(super) fn of_windows(window: WindowPx) -> Option<Self> {
         let even = window.width.is_multiple_of(2) && window.height.is_multiple_of(2);
         let (width_px, height_px) = aligned(window).filter(|_| even)?;
-        Some(Self { look: Look::Windows, width_px, height_px, row_step: 1, together: CELL_ROWS })
+        let sub_block = SubBlock { width_px, height_px };
+        Some(Self { look: Look::Windows, sub_block, row_step: 1, together: CELL_ROWS })
     }
 
-    /// Size of a sub-block.
-    pub(super) fn size_px(self) -> (u32, u32) {
-        (self.width_px, self.height_px)
-    }
-
-    /// How often rows and pixels are halved into averages, from whole ones to those of sub-blocks.
-    pub(super) fn run_halvings(self) -> u32 {
-        self.width_px.ilog2()
+    /// What is averaged: sub-blocks, or whole windows.
+    pub(super) fn sub_block(self) -> SubBlock {
+        self.sub_block
     }
 
     /// Whether it looks at whole windows.
@@ -92,22 +85,24 @@ impl Mesh {
         self.look == Look::Windows
     }
 
-    /// Samples of a sub-block, k: each of its pixels is four.
-    fn samples(self) -> u32 {
-        4 * self.width_px * self.height_px
+    /// Byte averages that may belong to a window that matches, R, G, B; `None` where none can.
+    pub(super) fn averages(self, accepted: &Acceptance, samples: u32) -> Option<[Bounds<u8>; 3]> {
+        match self.look {
+            // Bounds that no level lies between are reversed, but of extremes one may lie on either side of them.
+            Look::Windows => Some(accepted.means(samples)),
+            Look::Rows | Look::SubBlocks => self.sub_block.averages(accepted, samples),
+        }
     }
 
     /// The rows of pixels that band `band` looks at.
     pub(super) fn pixel_rows(self, band: u32) -> Range<u32> {
         let first = band * self.row_step;
-        first..first + self.height_px
+        first..first + self.sub_block.height_px
     }
 
     /// The rows of the mask that row `row` of cells decides on.
     pub(super) fn mask_rows(self, row: u32, mask_height: u32) -> Range<u32> {
-        let bands = self.own_bands(row);
-        let first = (bands.start * self.row_step + 1).saturating_sub(self.row_step);
-        let pixels = first..(bands.end - 1) * self.row_step + 1;
+        let pixels = self.start_pixels(row);
         let rows = match self.look {
             Look::Rows => DoubledGrid::starts_with_first_whole_pixel(pixels),
             Look::SubBlocks | Look::Windows => {
@@ -115,6 +110,14 @@ impl Mesh {
             }
         };
         rows.start.min(mask_height)..rows.end.min(mask_height)
+    }
+
+    /// The rows of pixels where the windows begin that row `row` of cells decides on; those that they cover in full first,
+    /// where it looks at single rows.
+    pub(super) fn start_pixels(self, row: u32) -> Range<u32> {
+        let bands = self.own_bands(row);
+        let first = (bands.start * self.row_step + 1).saturating_sub(self.row_step);
+        first..(bands.end - 1) * self.row_step + 1
     }
 
     /// The bands that begin in row `row` of cells.
@@ -136,31 +139,7 @@ impl Mesh {
 
     /// Number of bands.
     pub(super) fn bands(self, region_height: u32) -> u32 {
-        (region_height + 1).saturating_sub(self.height_px).div_ceil(self.row_step)
-    }
-
-    /// Byte averages of sub-blocks that may belong to a matching window, R, G, B; `None` where none can.
-    pub(super) fn averages(self, accepted: &Acceptance, samples: u32) -> Option<[Bounds<u8>; 3]> {
-        let (n, k) = (f64::from(samples), f64::from(self.samples()));
-        let mut averages = [Bounds { low: 0, high: 0 }; 3];
-        for (channel, averages) in averages.iter_mut().enumerate() {
-            let largest_variance = accepted.spread[channel].high as f64 / (n * n);
-            let wider = (largest_variance * (n - k).max(0.0) / k).sqrt() + ROUNDING;
-            let averaging = match self.look {
-                Look::Rows | Look::SubBlocks => {
-                    f64::from(self.width_px.ilog2() + self.height_px.ilog2()) / 2.0
-                }
-                Look::Windows => 0.0,
-            };
-            let low = (f64::from(accepted.sum[channel].low) / n - wider).ceil().max(0.0);
-            let high = (f64::from(accepted.sum[channel].high) / n + wider + averaging).floor().min(255.0);
-            // Of extremes one may lie on either side of bounds that no level lies between.
-            if low > high && self.look != Look::Windows {
-                return None;
-            }
-            *averages = Bounds { low: low as u8, high: high as u8 };
-        }
-        Some(averages)
+        (region_height + 1).saturating_sub(self.sub_block.height_px).div_ceil(self.row_step)
     }
 }
 
@@ -169,6 +148,108 @@ impl Mesh {
 fn aligned(window: WindowPx) -> Option<(u32, u32)> {
     let pixels = |side| Some(DoubledGrid::aligned_pixels(side)).filter(|&pixels| pixels > 0);
     Some((pixels(window.width)?, pixels(window.height)?))
+}
+
+/// Pixels that lie under a window in full; but for whole windows both sides are powers of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SubBlock {
+    pub(super) width_px: u32,
+    pub(super) height_px: u32,
+}
+
+impl SubBlock {
+    /// Byte averages that may belong to a window that matches, R, G, B; `None` where none can.
+    pub(super) fn averages(self, accepted: &Acceptance, samples: u32) -> Option<[Bounds<u8>; 3]> {
+        let (n, k) = (f64::from(samples), self.samples());
+        let mut averages = [Bounds { low: 0, high: 0 }; 3];
+        for (channel, averages) in averages.iter_mut().enumerate() {
+            let largest_variance = accepted.spread[channel].high as f64 / (n * n);
+            let wider = (largest_variance * (n - k).max(0.0) / k).sqrt() + ROUNDING;
+            let low = (f64::from(accepted.sum[channel].low) / n - wider).ceil().max(0.0);
+            let high = f64::from(accepted.sum[channel].high) / n + wider + self.averaging();
+            let high = high.floor().min(255.0);
+            if low > high {
+                return None;
+            }
+            *averages = Bounds { low: low as u8, high: high as u8 };
+        }
+        Some(averages)
+    }
+
+    /// The most by which byte averages of its halves differ where it belongs to a window that matches, in any channel: the
+    /// scatter of the window's n samples about their mean, n σ², is at least that of the halves' means, k/4 times their
+    /// squared difference.
+    pub(super) fn most_between_halves(self, accepted: &Acceptance, samples: u32) -> u8 {
+        let largest = accepted.spread.map(|spread| spread.high).into_iter().max().unwrap_or(0);
+        let most = (4.0 * largest as f64 / (f64::from(samples) * self.samples())).sqrt();
+        (most + self.averaging() + ROUNDING).min(255.0) as u8
+    }
+
+    /// Samples of it, k: each of its pixels is four.
+    fn samples(self) -> f64 {
+        f64::from(4 * self.width_px * self.height_px)
+    }
+
+    /// By how much a byte average may be too large.
+    fn averaging(self) -> f64 {
+        f64::from(self.width_px.ilog2() + self.height_px.ilog2()) / 2.0
+    }
+}
+
+/// Sub-blocks so near to each other that every window covers one of them in full, wherever it starts. Each by itself proves
+/// something of the windows around it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Lattice {
+    sub_block: SubBlock,
+    column_step: u32,
+    row_step: u32,
+}
+
+impl Lattice {
+    /// `None` for windows so small that they may cover no pixel in full.
+    pub(super) fn of(window: WindowPx) -> Option<Self> {
+        let whole = |side| Some(DoubledGrid::whole_pixels(side)).filter(|&pixels| pixels > 0);
+        let (width, height) = (whole(window.width)?, whole(window.height)?);
+        let sub_block = SubBlock { width_px: side_within(width), height_px: side_within(height) };
+        let (column_step, row_step) = (width - sub_block.width_px + 1, height - sub_block.height_px + 1);
+        Some(Self { sub_block, column_step, row_step })
+    }
+
+    pub(super) fn sub_block(self) -> SubBlock {
+        self.sub_block
+    }
+
+    /// So far beyond the columns where windows begin lie the pixels of what [`columns`](Self::columns) gives.
+    pub(super) fn reach_px(self) -> u32 {
+        self.column_step + self.sub_block.width_px
+    }
+
+    /// Pixels from one sub-block to the next.
+    pub(super) fn column_step(self) -> u32 {
+        self.column_step
+    }
+
+    /// From the first to the last sub-block's first column, where every window that begins on one of these columns covers
+    /// one of them.
+    pub(super) fn columns(self, starts: &Range<u32>) -> Range<u32> {
+        places(starts, self.column_step)
+    }
+
+    /// The first rows of sub-blocks, likewise.
+    pub(super) fn rows(self, starts: &Range<u32>) -> impl Iterator<Item = u32> {
+        places(starts, self.row_step).step_by(self.row_step as usize)
+    }
+}
+
+/// From the first to the last multiple of `step` that comes next from a pixel where windows begin, or from the pixel after
+/// it: that is the first one they cover in full when they begin on a pixel's second sample.
+fn places(starts: &Range<u32>, step: u32) -> Range<u32> {
+    starts.start.next_multiple_of(step)..starts.end.next_multiple_of(step) + 1
+}
+
+/// The side of the largest sub-block within so many pixels.
+fn side_within(pixels: u32) -> u32 {
+    1 << pixels.ilog2().min(MOST_HALVINGS)
 }
 
 /// More than all rounding in the few operations above.
@@ -203,6 +284,35 @@ mod tests {
                     prop_assert!(seen.any(|band| covered(&band)));
                 }
             }
+        }
+
+        /// Wherever a window starts, one of the lattice's sub-blocks lies under it in full.
+        #[test]
+        fn every_window_covers_a_sub_block_of_the_lattice(side in 3u16..60, start in 0u32..200, before in 0u32..9) {
+            let lattice = Lattice::of(WindowPx::square(side)).unwrap();
+            let pixel = DoubledGrid::pixels_of_starts(&(start..start + 1)).start;
+            let columns = lattice.columns(&(pixel.saturating_sub(before)..pixel + 1));
+            let covered = |first: u32| {
+                (first..first + lattice.sub_block.width_px).all(|at| DoubledGrid::samples_on(at, start, side) == 2)
+            };
+            prop_assert!(columns.end <= pixel + 1 + lattice.reach_px());
+            prop_assert!(columns.step_by(lattice.column_step as usize).any(covered));
+        }
+
+        /// Halves of a window's sub-block differ by no more than what its own spread allows.
+        #[test]
+        fn halves_differ_by_no_more_than_the_spread_allows(
+            levels in prop::collection::vec(any::<u8>(), 36), flat in 0usize..36, level: u8,
+        ) {
+            let mut levels: Vec<u64> = levels.into_iter().map(u64::from).collect();
+            levels[flat..].fill(u64::from(level));
+            let (sum, squares): (u64, u64) = levels.iter().fold((0, 0), |(s, q), x| (s + 4 * x, q + 4 * x * x));
+            let spread = 144 * squares - sum * sum;
+            let bounds = Bounds { low: 0, high: spread };
+            let accepted = Acceptance { sum: [Bounds { low: 0, high: 255 * 144 }; 3], spread: [bounds; 3] };
+            let most = SubBlock { width_px: 4, height_px: 4 }.most_between_halves(&accepted, 144);
+            let half = |first: usize| -> u64 { (first..first + 2).flat_map(|row| &levels[6 * row..6 * row + 4]).sum() };
+            prop_assert!(half(0).abs_diff(half(2)) < 8 * (u64::from(most) + 1));
         }
     }
 }

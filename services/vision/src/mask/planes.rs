@@ -57,6 +57,12 @@ impl Planes {
         row as usize & (self.rows.len() - 1)
     }
 
+    /// A row that was read: R, then G, then B.
+    #[inline(always)]
+    pub(super) fn channels(&self, row: u32) -> &[u8] {
+        &self.levels[3 * self.place(row) * self.columns..][..3 * self.columns]
+    }
+
     /// One channel of a row that was read.
     #[inline(always)]
     pub(super) fn channel(&self, row: u32, channel: usize) -> &[u8] {

@@ -10,7 +10,7 @@
 //! B is put together from sums of 1, 2, 4 … columns, each level twice the one before it: a handful of steps over whole
 //! chunks, where a running sum would go one column after another.
 
-use super::chunk::{Chunk, WIDTH, add, fit, join, load, store, whole_chunks};
+use super::chunk::{WIDTH, add, chunks, chunks_mut, fit, join, whole_chunks};
 use super::lane::Lane;
 
 /// Column sums of a row of windows, and sums of 2ᵏ neighbouring ones for every k that B needs.
@@ -19,19 +19,19 @@ pub(super) struct Powers<T> {
     levels: Vec<Vec<T>>,
     /// B.
     lesser: Vec<T>,
-    /// Columns, in whole chunks, that every level covers; what lies beyond is arbitrary.
+    /// Columns, in whole chunks, that every level covers; what windows at the last of them cover beyond is arbitrary.
     covered: usize,
     half: usize,
     odd: T,
 }
 
 impl<T: Lane> Powers<T> {
-    /// Prepares for windows of `side` samples at `positions` columns.
+    /// Prepares for windows of `side` samples over so many columns, in whole chunks.
     #[inline(always)]
-    pub(super) fn fit(&mut self, positions: usize, side: u16) {
+    pub(super) fn fit(&mut self, columns: usize, side: u16) {
         self.half = usize::from(side) / 2;
         self.odd = T::from_i64(i64::from(side % 2));
-        self.covered = whole_chunks(positions + self.half + 1);
+        self.covered = columns;
         let levels = self.half.checked_ilog2().map_or(1, |largest| largest as usize + 1);
         if self.levels.len() < levels {
             self.levels.resize_with(levels, Vec::new);
@@ -48,22 +48,21 @@ impl<T: Lane> Powers<T> {
         &mut self.levels[0][..self.covered]
     }
 
-    /// Sums the column sums over every window that starts at the first `positions` columns: on their first samples, and on
-    /// their second.
+    /// Sums the column sums over every window: those that start on the first samples of columns, and on their second.
     #[inline(always)]
-    pub(super) fn build_into(&mut self, [on_first, on_second]: &mut [Vec<T>; 2], positions: usize) {
+    pub(super) fn build_into(&mut self, [on_first, on_second]: &mut [Vec<T>; 2]) {
         self.build();
-        for x in (0..positions).step_by(WIDTH) {
-            let [first, second] = self.windows(x);
-            store(on_first, x, first);
-            store(on_second, x, second);
+        let columns = &self.levels[0];
+        let first_columns = chunks(&columns[..self.covered]).iter();
+        let next_columns = chunks(&columns[self.half..][..self.covered]).iter();
+        let sums = chunks(&self.lesser[..self.covered]).iter().zip(first_columns).zip(next_columns);
+        let on_first = chunks_mut(&mut on_first[..self.covered]).iter_mut();
+        let windows = on_first.zip(chunks_mut(&mut on_second[..self.covered]));
+        for ((on_first, on_second), ((lesser, first_column), next_column)) in windows.zip(sums) {
+            let twice = add(*lesser, *lesser);
+            *on_first = join(twice, *next_column, |sum, next| sum.plus(self.odd.times(next)));
+            *on_second = join(join(*on_first, *next_column, T::plus), *first_column, T::minus);
         }
-    }
-
-    /// B at the 32 columns from `x`.
-    #[inline(always)]
-    pub(super) fn lesser(&self, x: usize) -> Chunk<T> {
-        load(&self.lesser, x)
     }
 
     /// B at all columns that were to be covered.
@@ -81,9 +80,11 @@ impl<T: Lane> Powers<T> {
                 break;
             }
             let (lower, upper) = self.levels.split_at_mut(level);
-            let below = lower[level - 1][..self.covered].iter().zip(&lower[level - 1][length..]);
-            for (sum, (&left, &right)) in upper[0][..self.covered].iter_mut().zip(below) {
-                *sum = left.plus(right);
+            let (left, right) =
+                (&lower[level - 1][..self.covered], &lower[level - 1][length..][..self.covered]);
+            let sums = chunks_mut(&mut upper[0][..self.covered]).iter_mut();
+            for (sum, (left, right)) in sums.zip(chunks(left).iter().zip(chunks(right))) {
+                *sum = add(*left, *right);
             }
             length *= 2;
         }
@@ -100,7 +101,8 @@ impl<T: Lane> Powers<T> {
             if from == 0 {
                 lesser.copy_from_slice(part);
             } else {
-                lesser.iter_mut().zip(part).for_each(|(sum, &more)| *sum = sum.plus(more));
+                let sums = chunks_mut(lesser).iter_mut().zip(chunks(part));
+                sums.for_each(|(sum, more)| *sum = add(*sum, *more));
             }
             from += 1 << level;
         }
@@ -108,18 +110,12 @@ impl<T: Lane> Powers<T> {
             lesser.fill(T::default());
         }
     }
+}
 
-    /// Sums of the windows that start at the 32 columns from `x`: on their first sample, and on their second.
-    #[inline(always)]
-    fn windows(&self, x: usize) -> [Chunk<T>; 2] {
-        let lesser = load(&self.lesser, x);
-        let first_column = load(&self.levels[0], x);
-        let next_column = load(&self.levels[0], x + self.half);
-        let odd = self.odd;
-        let on_first = join(add(lesser, lesser), next_column, |sum, next| sum.plus(odd.times(next)));
-        let on_second = join(join(on_first, next_column, T::plus), first_column, T::minus);
-        [on_first, on_second]
-    }
+/// Columns, in whole chunks, under windows of `side` samples that start at so many of them.
+#[inline(always)]
+pub(super) fn columns_under(positions: usize, side: u16) -> usize {
+    whole_chunks(positions + usize::from(side) / 2 + 1)
 }
 
 #[cfg(test)]
@@ -132,13 +128,13 @@ mod tests {
         #[test]
         fn windows_sum_their_weighted_columns(side in 1u16..200, seed in 1u32..1000) {
             let mut powers = Powers::<i32>::default();
-            powers.fit(64, side);
+            powers.fit(columns_under(64, side), side);
             let levels: Vec<i32> = (0..powers.columns().len() as u32).map(|x| (x * seed % 251) as i32).collect();
             powers.columns().copy_from_slice(&levels);
-            let mut sums = [vec![0; 64], vec![0; 64]];
-            powers.build_into(&mut sums, 64);
+            let mut sums = [vec![0; levels.len()], vec![0; levels.len()]];
+            powers.build_into(&mut sums);
             for (phase, sums) in (0..).zip(&sums) {
-                for (start, &sum) in (phase..).step_by(2).zip(sums) {
+                for (start, &sum) in (phase..).step_by(2).zip(sums).take(64) {
                     let expected: i32 = DoubledGrid::pixels_under(start, side)
                         .map(|at| DoubledGrid::samples_on(at, start, side) as i32 * levels[at as usize]).sum();
                     prop_assert_eq!(sum, expected);

@@ -1,12 +1,13 @@
 //! The range of levels in every cell of a region, and what it says of a landmark.
 
+use std::ops::Range;
+
 use crate::statistics::Bounds;
 
 use super::cells::Cells;
 use super::chunk::fit;
-use super::exact::BLOCK_PX;
 use super::refute::{Doubt, Side};
-use super::sieve::{BLOCK_BYTES, join_shifted};
+use super::sieve::{BLOCK_BYTES, STEP_BYTES, join_shifted};
 
 /// The smallest and largest means that some sub-block of each cell has.
 #[derive(Clone, Debug, Default)]
@@ -36,30 +37,39 @@ impl Ranges {
         self.blocks
     }
 
-    /// Notes a row of cells: the extremes over each block's pixels and the first one after them. (Windows that start on the
-    /// second sample of the block's last pixel cover the next one first.) `lowest` and `highest` are extremes over the
-    /// cells' rows from each pixel on, and hold what means something before number `valid`; `floor` and `ceil` make levels
-    /// of them.
+    /// Notes a stretch of a row of cells: the extremes over each block's pixels and the first one after them. (Windows that
+    /// start on the second sample of the block's last pixel cover the next one first.) `lowest` and `highest` are extremes
+    /// over the cells' rows from each pixel on, and hold what means something before number `valid`; `floor` and `ceil` make
+    /// levels of them.
     #[inline(always)]
-    pub(super) fn note<T: Copy + Ord>(
+    pub(super) fn note<T: Copy + Ord + Default>(
         &mut self,
         row: usize,
+        blocks: Range<usize>,
         valid: usize,
-        [lowest, highest, memory]: [&mut Vec<T>; 3],
+        [lowest, highest]: [&mut [T]; 2],
+        memory: &mut [Vec<T>; 2],
         (floor, ceil): (impl Fn(T) -> u8, impl Fn(T) -> u8),
     ) {
+        let cells = row * self.blocks + blocks.start..row * self.blocks + blocks.end;
         repeat_last_pixel(lowest, valid);
+        join_blocks(lowest, blocks.len(), memory, T::min);
+        note_blocks(&mut self.low, cells.clone(), &memory[0], lowest, |block, next| floor(block.min(next)));
         repeat_last_pixel(highest, valid);
-        spread(lowest, memory, T::min);
-        spread(highest, memory, T::max);
-        let cells = row * self.blocks..(row + 1) * self.blocks;
-        for (channel, (low, high)) in self.low.iter_mut().zip(&mut self.high).enumerate() {
-            let starts = (channel..).step_by(BLOCK_BYTES);
-            for ((low, high), at) in low[cells.clone()].iter_mut().zip(&mut high[cells.clone()]).zip(starts) {
-                *low = floor(lowest[at].min(lowest[at + 3]));
-                *high = ceil(highest[at].max(highest[at + 3]));
-            }
-        }
+        join_blocks(highest, blocks.len(), memory, T::max);
+        note_blocks(&mut self.high, cells, &memory[0], highest, |block, next| ceil(block.max(next)));
+    }
+
+    /// The range of levels in every cell: R, G and B of its lowest, and of its highest.
+    #[inline(always)]
+    pub(super) fn cells(&self) -> impl Iterator<Item = ([u8; 3], [u8; 3])> {
+        let cells = self.rows * self.blocks;
+        let [low_red, low_green, low_blue] = &self.low;
+        let [high_red, high_green, high_blue] = &self.high;
+        let low = low_red[..cells].iter().zip(low_green).zip(low_blue);
+        let high = high_red[..cells].iter().zip(high_green).zip(high_blue);
+        let cells = low.zip(high);
+        cells.map(|(((&r, &g), &b), ((&high_r, &high_g), &high_b))| ([r, g, b], [high_r, high_g, high_b]))
     }
 
     /// Sets the cells where a window may match one of the shades.
@@ -126,11 +136,55 @@ fn repeat_last_pixel<T: Copy>(row: &mut [T], end: usize) {
     }
 }
 
-/// Makes of each number the extreme of those of its channel in the [`BLOCK_PX`] pixels from there on.
+/// Numbers of a quarter of a block.
+const QUARTER: usize = BLOCK_BYTES / 4;
+
+/// Makes `memory[0]` what `with` makes of each channel in every block: in the first three of [`QUARTER`] numbers.
 #[inline(always)]
-fn spread<T: Copy>(extremes: &mut Vec<T>, memory: &mut Vec<T>, with: impl Fn(T, T) -> T) {
-    for doubling in 0..BLOCK_PX.ilog2() {
-        join_shifted(extremes, 3 << doubling, memory, &with);
-        std::mem::swap(extremes, memory);
+fn join_blocks<T: Copy + Default>(
+    row: &[T],
+    blocks: usize,
+    [joined, memory]: &mut [Vec<T>; 2],
+    with: impl Fn(T, T) -> T,
+) {
+    for buffer in [&mut *joined, &mut *memory] {
+        buffer.resize((QUARTER * blocks).next_multiple_of(STEP_BYTES) + STEP_BYTES, T::default());
+    }
+    for (quarter, block) in joined.as_chunks_mut::<QUARTER>().0.iter_mut().zip(&row.as_chunks().0[..blocks]) {
+        *quarter = join_quarters(block, &with);
+    }
+    for shift in [QUARTER / 2, QUARTER / 4, QUARTER / 8] {
+        join_shifted(joined, shift, memory, &with);
+        std::mem::swap(joined, memory);
+    }
+}
+
+#[inline(always)]
+fn join_quarters<T: Copy + Default>(block: &[T; BLOCK_BYTES], with: impl Fn(T, T) -> T) -> [T; QUARTER] {
+    let (mut halves, mut quarter) = ([T::default(); 2 * QUARTER], [T::default(); QUARTER]);
+    for at in 0..2 * QUARTER {
+        halves[at] = with(block[at], block[at + 2 * QUARTER]);
+    }
+    for at in 0..QUARTER {
+        quarter[at] = with(halves[at], halves[at + QUARTER]);
+    }
+    quarter
+}
+
+/// Notes the level of every block, by what was made of it and the pixel after it in `row`.
+#[inline(always)]
+fn note_blocks<T: Copy>(
+    levels: &mut [Vec<u8>; 3],
+    cells: Range<usize>,
+    joined: &[T],
+    row: &[T],
+    level: impl Fn(T, T) -> u8,
+) {
+    for (channel, levels) in levels.iter_mut().enumerate() {
+        let blocks = joined[channel..].iter().step_by(QUARTER);
+        let next = row[BLOCK_BYTES + channel..].iter().step_by(BLOCK_BYTES);
+        for ((cell, &block), &next) in levels[cells.clone()].iter_mut().zip(blocks).zip(next) {
+            *cell = level(block, next);
+        }
     }
 }

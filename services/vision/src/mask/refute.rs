@@ -9,12 +9,12 @@ use crate::doubled_grid::DoubledGrid;
 use crate::statistics::Acceptance;
 
 use super::cells::Cells;
-use super::chunk::WIDTH;
+use super::chunk::{WIDTH, chunks, chunks_mut, join};
 use super::exact::{Area, BLOCK_PX, Question};
 use super::lane::Lane;
 use super::lanes::Work;
 use super::planes::Planes;
-use super::powers::Powers;
+use super::powers::{Powers, columns_under};
 
 /// Rows of pixels that are refuted or left together.
 const ROWS_TOGETHER: u32 = 8;
@@ -152,7 +152,7 @@ impl Refuter {
         let window = question.grid.window();
         // And one more column, for the means.
         let positions = WIDTH * area.blocks.len() + 1;
-        self.powers.fit(positions, window.width);
+        self.powers.fit(columns_under(positions, window.width), window.width);
         let columns = self.powers.columns().len();
         self.largest.resize(columns, i16::MIN);
         let rows = DoubledGrid::aligned_pixels(window.height);
@@ -170,15 +170,19 @@ impl Refuter {
             columns.fill(0);
             for row in row..row + high {
                 self.planes.read(question.frame, question.grid, row);
-                let entering = self.planes.channel(row, refutation.channel);
-                columns.iter_mut().zip(entering).for_each(|(sum, &enter)| *sum = sum.plus(of(enter)));
+                let entering = chunks(self.planes.channel(row, refutation.channel));
+                for (sum, enter) in chunks_mut(columns).iter_mut().zip(entering) {
+                    *sum = join(*sum, *enter, |sum, enter| sum.plus(of(enter)));
+                }
             }
         } else {
             self.planes.read(question.frame, question.grid, row + high - 1);
             let entering = self.planes.channel(row + high - 1, refutation.channel);
             let leaving = self.planes.channel(row - 1, refutation.channel);
-            for ((sum, &enter), &leave) in columns.iter_mut().zip(entering).zip(leaving) {
-                *sum = sum.plus(of(enter).minus(of(leave)));
+            let levels = chunks(entering).iter().zip(chunks(leaving));
+            for (sum, (enter, leave)) in chunks_mut(columns).iter_mut().zip(levels) {
+                let change = join(*enter, *leave, |enter, leave| of(enter).minus(of(leave)));
+                *sum = join(*sum, change, i16::plus);
             }
         }
         self.powers.build();
@@ -187,8 +191,10 @@ impl Refuter {
     /// Extends the largest sums to the present row.
     #[inline(always)]
     fn extend_largest(&mut self) {
-        let sums = self.powers.lesser_sums();
-        self.largest.iter_mut().zip(sums).for_each(|(largest, &sum)| *largest = sum.max(*largest));
+        let sums = chunks(self.powers.lesser_sums());
+        for (largest, sums) in chunks_mut(&mut self.largest).iter_mut().zip(sums) {
+            *largest = join(*largest, *sums, i16::max);
+        }
     }
 
     /// Notes in which blocks of a band a window may match: those where it does by its own columns, or by the first one

@@ -82,7 +82,7 @@ impl Sieve {
         for band in 0..bands {
             let start = 3 * region.x as usize;
             let row = frame.row(region.y + mesh.pixel_rows(band).start);
-            self.average(&row[start..start + 3 * region.width as usize], mesh.run_halvings());
+            self.average(&row[start..start + 3 * region.width as usize], mesh.sub_block().width_px.ilog2());
             for levels in levels {
                 compare(&self.averages, levels, &mut self.inside);
                 for (block, alive) in cells.band(band as usize).iter_mut().enumerate() {

@@ -3,7 +3,7 @@
 use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
 
-use super::mesh::Mesh;
+use super::mesh::{Mesh, SubBlock};
 use super::ranges::Ranges;
 use super::sieve::{average, average_runs, row_bytes};
 
@@ -16,6 +16,8 @@ pub(super) struct SubBlocks {
     /// Their extremes over the bands of the present row of cells.
     lowest: Vec<u8>,
     highest: Vec<u8>,
+    /// Memory to join them.
+    joined: [Vec<u8>; 2],
 }
 
 impl SubBlocks {
@@ -26,7 +28,7 @@ impl SubBlocks {
             buffer.resize(row_bytes(ranges.blocks()), 0);
         }
         // Sub-blocks that stick out of the region mean nothing; no window of the region begins there.
-        let valid = 3 * (grid.region().width + 1 - mesh.size_px().0) as usize;
+        let valid = 3 * (grid.region().width + 1 - mesh.sub_block().width_px) as usize;
         let bands = mesh.bands(grid.region().height);
         for row in 0..ranges.rows() {
             let seen = mesh.bands_seen(row as u32);
@@ -42,8 +44,8 @@ impl SubBlocks {
                     self.widen();
                 }
             }
-            let level = |level: u8| level;
-            ranges.note(row, valid, [&mut self.lowest, &mut self.highest, &mut self.memory], (level, level));
+            let (extremes, level) = ([&mut self.lowest[..], &mut self.highest[..]], |level: u8| level);
+            ranges.note(row, 0..ranges.blocks(), valid, extremes, &mut self.joined, (level, level));
         }
     }
 
@@ -54,13 +56,9 @@ impl SubBlocks {
         let bytes = 3 * region.x as usize..3 * (region.x + region.width) as usize;
         let first = region.y + mesh.pixel_rows(band).start;
         let row = |ahead: u32| &frame.row(first + ahead)[bytes.clone()];
-        match mesh.size_px().1 {
-            1 => self.averages[..bytes.len()].copy_from_slice(row(0)),
-            2 => average_two([row(0), row(1)], &mut self.averages),
-            4 => average_four([0, 1, 2, 3].map(row), &mut self.averages),
-            _ => average_eight([0, 1, 2, 3, 4, 5, 6, 7].map(row), &mut self.averages),
-        }
-        average_runs(&mut self.averages, &mut self.memory, mesh.run_halvings());
+        let SubBlock { width_px, height_px } = mesh.sub_block();
+        average_rows(row, height_px, &mut self.averages);
+        average_runs(&mut self.averages, &mut self.memory, width_px.ilog2());
     }
 
     /// Extends the extremes to the present band.
@@ -70,6 +68,17 @@ impl SubBlocks {
             *low = average.min(*low);
             *high = average.max(*high);
         }
+    }
+}
+
+/// The rounded averages, byte by byte, of so many rows: 1, 2, 4 or 8.
+#[inline(always)]
+pub(super) fn average_rows<'a>(row: impl Fn(u32) -> &'a [u8] + Copy, rows: u32, averages: &mut [u8]) {
+    match rows {
+        1 => averages[..row(0).len()].copy_from_slice(row(0)),
+        2 => average_two([row(0), row(1)], averages),
+        4 => average_four([0, 1, 2, 3].map(row), averages),
+        _ => average_eight([0, 1, 2, 3, 4, 5, 6, 7].map(row), averages),
     }
 }
 

@@ -10,12 +10,12 @@ use crate::doubled_grid::DoubledGrid;
 use crate::statistics::Acceptance;
 
 use super::cells::Cells;
-use super::chunk::{self, WIDTH, fit, join, load, store};
+use super::chunk::{self, WIDTH, chunks, chunks_mut, fit, join};
 use super::exact::{Area, BLOCK_PX, Question, set};
 use super::lane::Lane;
 use super::lanes::Work;
 use super::planes::Planes;
-use super::powers::Powers;
+use super::powers::{Powers, columns_under};
 
 /// Rows of pixels that are tested together where one of them is not proven: each beginning costs some rows.
 const ROWS_TOGETHER: u32 = 8;
@@ -131,7 +131,8 @@ impl Sure {
     #[inline(always)]
     fn fit(&mut self, question: &Question<'_>, area: &Area) {
         let positions = WIDTH * area.blocks.len();
-        self.powers.fit(positions, 2 * pixels_wide(question.grid) as u16);
+        let side = 2 * pixels_wide(question.grid) as u16;
+        self.powers.fit(columns_under(positions, side), side);
         let columns = self.powers.columns().len();
         for sums in &mut self.columns {
             fit(sums, columns);
@@ -151,11 +152,10 @@ impl Sure {
                 let of = proof.square(channel);
                 let (enter, leave) =
                     (self.planes.channel(last, channel), self.planes.channel(row - 1, channel));
-                for x in (0..columns).step_by(WIDTH) {
-                    let change =
-                        join(load(enter, x), load(leave, x), |enter, leave| of(enter).minus(of(leave)));
-                    let sum = chunk::add(load(sums, x), change);
-                    store(sums, x, sum);
+                let levels = chunks(enter).iter().zip(chunks(leave));
+                for (sum, (enter, leave)) in chunks_mut(&mut sums[..columns]).iter_mut().zip(levels) {
+                    let change = join(*enter, *leave, |enter, leave| of(enter).minus(of(leave)));
+                    *sum = chunk::add(*sum, change);
                 }
             }
         } else {
@@ -164,9 +164,8 @@ impl Sure {
                 let of = proof.square(channel);
                 sums[..columns].fill(0);
                 for plane in (row..=last).map(|row| self.planes.channel(row, channel)) {
-                    for x in (0..columns).step_by(WIDTH) {
-                        let sum = join(load(sums, x), load(plane, x), |sum: i16, level| sum.plus(of(level)));
-                        store(sums, x, sum);
+                    for (sum, levels) in chunks_mut(&mut sums[..columns]).iter_mut().zip(chunks(plane)) {
+                        *sum = join(*sum, *levels, |sum: i16, level| sum.plus(of(level)));
                     }
                 }
             }
@@ -182,14 +181,12 @@ impl Sure {
         for (channel, sums) in self.columns.iter().enumerate() {
             let most = proof.most[channel] as i16;
             let columns = self.powers.columns();
-            for x in (0..columns.len()).step_by(WIDTH) {
-                let clipped = join(load(sums, x), load(sums, x), |sum, _| sum.min(most + 1));
-                store(columns, x, clipped);
+            for (clipped, sums) in chunks_mut(columns).iter_mut().zip(chunks(sums)) {
+                *clipped = join(*sums, *sums, |sum, _| sum.min(most + 1));
             }
             self.powers.build();
-            for (block, proven) in self.proven.iter_mut().enumerate() {
-                let sums = self.powers.lesser(WIDTH * block);
-                *proven &= chunk::pack(join(sums, sums, |sum, _| sum.at_most(most)));
+            for (proven, sums) in self.proven.iter_mut().zip(chunks(self.powers.lesser_sums())) {
+                *proven &= chunk::pack(join(*sums, *sums, |sum, _| sum.at_most(most)));
             }
         }
     }

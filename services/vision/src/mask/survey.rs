@@ -19,7 +19,6 @@ use super::sums::Sums;
 /// What was seen, and the memory to see it with.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Survey {
-    seen: Option<(DoubledGrid, Mesh)>,
     ranges: Ranges,
     sub_blocks: SubBlocks,
     sums: Sums,
@@ -36,7 +35,7 @@ pub(super) struct Take<'a> {
 impl Work for Take<'_> {
     #[inline(always)]
     fn run(self) {
-        let Self { survey: Survey { seen, ranges, sub_blocks, sums }, frame, grid, mesh } = self;
+        let Self { survey: Survey { ranges, sub_blocks, sums }, frame, grid, mesh } = self;
         let region = grid.region();
         let blocks = region.width.div_ceil(BLOCK_PX);
         ranges.fit(mesh.cell_rows(region.height) as usize, blocks as usize);
@@ -45,7 +44,6 @@ impl Work for Take<'_> {
         } else {
             sub_blocks.take(frame, grid, mesh, ranges);
         }
-        *seen = Some((*grid, mesh));
     }
 }
 
@@ -64,16 +62,6 @@ impl Work for Ask<'_> {
 }
 
 impl Survey {
-    /// How this grid was surveyed, if it was, and is not forgotten.
-    pub(super) fn of(&self, grid: &DoubledGrid) -> Option<Mesh> {
-        self.seen.filter(|(seen, _)| seen == grid).map(|(_, mesh)| mesh)
-    }
-
-    /// Forgets what was seen.
-    pub(super) fn forget(&mut self) {
-        self.seen = None;
-    }
-
     pub(super) fn ranges(&self) -> &Ranges {
         &self.ranges
     }

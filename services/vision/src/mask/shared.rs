@@ -1,0 +1,195 @@
+//! What landmarks with one window share: a survey of the frame, and by it, for every cell, the set of those that may match
+//! there.
+
+use std::ops::Range;
+
+use crate::doubled_grid::DoubledGrid;
+use crate::frame::Frame;
+use crate::statistics::Acceptance;
+
+use super::cells::Cells;
+use super::index::{Colours, Index, MOST_COLOURS};
+use super::lanes::Work;
+use super::lattice::{Closer, Quarters};
+use super::mesh::{Lattice, Mesh};
+use super::ranges::Ranges;
+use super::survey::{Survey, Take};
+
+/// What was seen for the landmarks of one grid, and the memory to see it with.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shared {
+    of: Option<(DoubledGrid, Mesh)>,
+    survey: Survey,
+    quarters: Quarters,
+    groups: Vec<Group>,
+    /// Groups in use.
+    used: usize,
+}
+
+/// Colours that fit into one index.
+#[derive(Clone, Debug, Default)]
+struct Group {
+    colours: u32,
+    /// By averages of the survey's sub-blocks.
+    of_survey: Index,
+    /// By averages of the lattice's.
+    of_lattice: Index,
+    /// The most that one of them allows between the halves of the lattice's sub-blocks.
+    most_between_halves: u8,
+    /// Those that may match in each cell.
+    living: Vec<Colours>,
+    /// Those that may match anywhere.
+    anywhere: Colours,
+}
+
+/// Where a landmark's colours are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    group: usize,
+    colours: Colours,
+}
+
+impl Shared {
+    /// Forgets what was seen.
+    pub(super) fn forget(&mut self) {
+        self.of = None;
+    }
+
+    /// How this grid was surveyed, if it was.
+    pub(super) fn mesh_of(&self, grid: &DoubledGrid) -> Option<Mesh> {
+        self.of.filter(|(seen, _)| seen == grid).map(|(_, mesh)| mesh)
+    }
+
+    /// Begins anew, for landmarks on that grid.
+    pub(super) fn begin(&mut self, grid: DoubledGrid, mesh: Mesh) {
+        (self.of, self.used) = (Some((grid, mesh)), 0);
+    }
+
+    /// Adds a landmark by what its shades accept; `None` for more shades than fit together.
+    pub(super) fn add(&mut self, accepted: &[Acceptance]) -> Option<Place> {
+        let (grid, mesh) = self.of?;
+        let shades = u32::try_from(accepted.len()).ok().filter(|&shades| shades <= MOST_COLOURS)?;
+        let full = |group: &Group| group.colours + shades > MOST_COLOURS;
+        if self.groups[..self.used].last().is_none_or(full) {
+            if self.used == self.groups.len() {
+                self.groups.push(Group::default());
+            }
+            self.groups[self.used].clear();
+            self.used += 1;
+        }
+        let group = self.used - 1;
+        let add = |accepted| self.groups[group].add(accepted, &grid, mesh);
+        Some(Place { group, colours: accepted.iter().map(add).fold(0, |all, one| all | one) })
+    }
+
+    /// Whether a landmark may match anywhere.
+    pub(super) fn may_match(&self, place: Place) -> bool {
+        self.groups[place.group].anywhere & place.colours != 0
+    }
+
+    /// Sets the cells where a landmark may match.
+    pub(super) fn tell(&self, place: Place, cells: &mut Cells) {
+        let ranges = self.survey.ranges();
+        cells.reset(ranges.rows(), ranges.blocks());
+        for (flag, living) in cells.flags().iter_mut().zip(&self.groups[place.group].living) {
+            *flag = u8::from(living & place.colours != 0);
+        }
+    }
+
+    pub(super) fn ranges(&self) -> &Ranges {
+        self.survey.ranges()
+    }
+}
+
+impl Group {
+    fn clear(&mut self) {
+        self.colours = 0;
+        self.most_between_halves = 0;
+        self.of_survey.clear();
+        self.of_lattice.clear();
+    }
+
+    /// Adds a shade; what its sub-blocks may look like nowhere, it accepts nowhere.
+    fn add(&mut self, accepted: &Acceptance, grid: &DoubledGrid, mesh: Mesh) -> Colours {
+        let colour = 1 << self.colours;
+        self.colours += 1;
+        let samples = grid.samples();
+        if let Some(averages) = mesh.averages(accepted, samples) {
+            self.of_survey.add(colour, &averages);
+        }
+        if let Some(sub_block) = Lattice::of(grid.window()).map(Lattice::sub_block) {
+            let most = sub_block.most_between_halves(accepted, samples);
+            self.most_between_halves = self.most_between_halves.max(most);
+            if let Some(averages) = sub_block.averages(accepted, samples) {
+                self.of_lattice.add(colour, &averages);
+            }
+        }
+        colour
+    }
+
+    /// Sets the colours that may match in each cell.
+    #[inline(always)]
+    fn sort(
+        &mut self,
+        frame: &Frame,
+        grid: &DoubledGrid,
+        mesh: Mesh,
+        ranges: &Ranges,
+        quarters: &mut Quarters,
+    ) {
+        self.of_survey.finish();
+        self.of_lattice.finish();
+        let blocks = ranges.blocks();
+        self.living.resize(ranges.rows() * blocks, 0);
+        for (living, (low, high)) in self.living.iter_mut().zip(ranges.cells()) {
+            *living = self.of_survey.touching(low, high);
+        }
+        if let Some(lattice) = Lattice::of(grid.window()) {
+            let (index, most_between_halves) = (&self.of_lattice, self.most_between_halves);
+            let closer = Closer { frame, grid, lattice, index, most_between_halves };
+            for (row, living) in self.living.chunks_mut(blocks).enumerate() {
+                look_closer(closer, mesh.start_pixels(row as u32), living, quarters);
+            }
+        }
+        self.anywhere = 0;
+        for living in &self.living {
+            self.anywhere |= living;
+        }
+    }
+}
+
+/// Looks closer at those cells of a row that are worth it: neighbouring ones together.
+#[inline(always)]
+fn look_closer(closer: Closer<'_>, starts: Range<u32>, row: &mut [Colours], quarters: &mut Quarters) {
+    let mut from = 0;
+    while let Some(ahead) = row[from..].iter().position(|&living| is_worth_a_look(living)) {
+        let start = from + ahead;
+        let length = row[start..].iter().take_while(|&&living| is_worth_a_look(living)).count();
+        from = start + length;
+        quarters.look(closer, starts.clone(), start..from, &mut row[start..from]);
+    }
+}
+
+/// Whether several colours live in a cell: a single one is refuted, or tested, at less cost.
+#[inline(always)]
+fn is_worth_a_look(living: Colours) -> bool {
+    living.count_ones() > 1
+}
+
+/// The pass over the frame for all landmarks that were added.
+pub(super) struct See<'a> {
+    pub(super) shared: &'a mut Shared,
+    pub(super) frame: &'a Frame,
+}
+
+impl Work for See<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Self { shared: Shared { of, survey, quarters, groups, used }, frame } = self;
+        let Some((grid, mesh)) = of else { return };
+        Take { survey: &mut *survey, frame, grid, mesh: *mesh }.run();
+        for group in &mut groups[..*used] {
+            group.sort(frame, grid, *mesh, survey.ranges(), quarters);
+        }
+    }
+}
