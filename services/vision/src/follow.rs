@@ -26,6 +26,8 @@ use crate::probe::StageProbe;
 use crate::register::{Request, ShapeVeto, Workspace, register_all};
 use crate::timestamp::Timestamp;
 use budget::Budget;
+use faithful::Found;
+use report::Ids;
 
 /// How a landmark is registered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -116,6 +118,19 @@ pub struct Follow {
     /// Memory only: no outcome depends on what earlier frames left in it.
     workspace: Workspace,
     tools: Tools,
+    lists: Lists,
+}
+
+/// Lists that are filled anew in every frame, and what came back.
+#[derive(Default)]
+struct Lists {
+    /// The order in which landmarks are looked for.
+    order: Vec<usize>,
+    /// What was found of each, in the order of the set.
+    by_landmark: Vec<Vec<LandmarkOutcome>>,
+    /// For the next outcome.
+    outcomes: Vec<LandmarkOutcome>,
+    ids: Ids,
 }
 
 /// What finds and traces objects in `adaptive` mode, with its memory.
@@ -127,7 +142,7 @@ struct Tools {
 
 impl fmt::Debug for Follow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { options, set, state, workspace: _, tools: _ } = self;
+        let Self { options, set, state, workspace: _, tools: _, lists: _ } = self;
         f.debug_struct("Follow")
             .field("options", options)
             .field("set", set)
@@ -152,6 +167,7 @@ impl Follow {
             state,
             workspace: Workspace::default(),
             tools: Tools::default(),
+            lists: Lists::default(),
         };
         follow.set_landmarks(set);
         follow
@@ -209,54 +225,79 @@ impl Follow {
         }
     }
 
+    /// Takes back an outcome that nobody needs any more: in `faithful` mode the next frame then asks for no memory.
+    pub fn recycle(&mut self, outcome: Outcome) {
+        let mut outcomes = outcome.landmarks;
+        for LandmarkOutcome { landmark, result, .. } in outcomes.drain(..) {
+            self.lists.ids.recycle(landmark);
+            if let Ok(sighting) = result {
+                self.workspace.recycle_sighting(sighting);
+            }
+        }
+        self.lists.outcomes = outcomes;
+    }
+
     /// Every landmark, in the order of the set. Those that are followed come first; the others begin with the one
     /// that the last frame's budget did not reach.
     fn register_all<P: StageProbe>(&mut self, scene: &Scene<'_>, probe: &mut P) -> Vec<LandmarkOutcome> {
         let count = self.set.landmarks.len();
-        let first = self.state.turn.min(count);
-        let (mut order, unseen): (Vec<usize>, Vec<usize>) =
-            (first..count).chain(0..first).partition(|&at| !self.state.landmarks[at].tracks.is_empty());
-        order.extend(unseen);
+        let mut lists = std::mem::take(&mut self.lists);
+        self.set_order(&mut lists.order);
+        lists.by_landmark.resize_with(count, Vec::new);
         let mut budget = Budget::new(self.options.budget_px);
-        let mut outcomes: Vec<Vec<LandmarkOutcome>> = vec![Vec::new(); count];
-        let mut unreached = None;
         if self.options.mode == Mode::Faithful {
-            self.register_faithful(scene, &order, &mut budget, &mut outcomes, probe);
+            self.register_faithful(scene, &mut lists, &mut budget, probe);
         }
-        for at in order {
+        let mut unreached = None;
+        for &at in &lists.order {
             if self.options.mode == Mode::Adaptive {
-                outcomes[at] = self.pursue(scene, at, &mut budget, probe);
+                lists.by_landmark[at] = self.pursue(scene, at, &mut budget, probe);
             }
-            let skipped = outcomes[at].iter().any(|outcome| outcome.result == Err(Miss::Skipped));
+            let skipped = lists.by_landmark[at].iter().any(|outcome| outcome.result == Err(Miss::Skipped));
             if skipped && unreached.is_none() && self.state.landmarks[at].tracks.is_empty() {
                 unreached = Some(at);
             }
         }
         self.state.turn = unreached.unwrap_or(0);
-        outcomes.into_iter().flatten().collect()
+        let mut outcomes = std::mem::take(&mut lists.outcomes);
+        lists.by_landmark.iter_mut().for_each(|found| outcomes.append(found));
+        self.lists = lists;
+        outcomes
+    }
+
+    /// Those that are followed first, then the others; each from the one on whose turn it is.
+    fn set_order(&self, order: &mut Vec<usize>) {
+        let count = self.set.landmarks.len();
+        let first = self.state.turn.min(count);
+        let in_turn = || (first..count).chain(0..first);
+        let unseen = |&at: &usize| self.state.landmarks[at].tracks.is_empty();
+        order.clear();
+        order.extend(in_turn().filter(|at| !unseen(at)));
+        order.extend(in_turn().filter(unseen));
     }
 
     /// All that the budget allows at once: they share passes over the frame.
     fn register_faithful<P: StageProbe>(
         &mut self,
         scene: &Scene<'_>,
-        order: &[usize],
+        lists: &mut Lists,
         budget: &mut Budget,
-        outcomes: &mut [Vec<LandmarkOutcome>],
         probe: &mut P,
     ) {
+        let Lists { order, by_landmark, ids, .. } = lists;
         let frame_px = u64::from(scene.frame.width()) * u64::from(scene.frame.height());
         let allowed = order.iter().take_while(|_| budget.spend(frame_px).is_some()).count();
         let (now, later) = order.split_at(allowed);
         let Self { set, state, workspace, .. } = self;
         for &at in later {
-            outcomes[at] = vec![report::missed(&set.landmarks[at], 0, Miss::Skipped)];
+            by_landmark[at].push(report::missed_by(ids, &set.landmarks[at], 0, Miss::Skipped));
         }
         let request = Request { shape_veto: scene.options.shape_veto, ..Request::default() };
         let landmarks = now.iter().map(|&at| set.landmarks[at].as_ref());
-        register_all(scene.frame, landmarks, &request, workspace, probe, |number, seen, _| {
+        register_all(scene.frame, landmarks, &request, workspace, probe, |number, seen, workspace| {
             let at = now[number];
-            outcomes[at] = faithful::landmark(scene, &set.landmarks[at], &mut state.landmarks[at], seen);
+            let found = Found { outcomes: &mut by_landmark[at], ids, workspace };
+            faithful::landmark(scene, &set.landmarks[at], &mut state.landmarks[at], seen, found);
         });
     }
 

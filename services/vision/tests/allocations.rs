@@ -4,9 +4,11 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
+use std::sync::Arc;
+
 use vision::{
-    ColorStats, Digest, Frame, Landmark, NoProbe, RectPx, Request, ShapeClass, WindowPx, Workspace, register,
-    register_all,
+    ColorStats, Digest, Follow, FollowOptions, Frame, FrameStamp, Landmark, LandmarkSet, Mode, NoProbe,
+    RectPx, Request, ShapeClass, Timestamp, WindowPx, Workspace, register, register_all,
 };
 
 thread_local! {
@@ -100,4 +102,43 @@ fn registration_allocates_nothing_in_the_steady_state() {
     }
     let counted = allocations(|| frames.iter().for_each(|frame| assert!(pass(frame) >= 6)));
     assert_eq!(counted, 0, "allocations in {} frames", frames.len());
+}
+
+/// Follows all landmarks to and fro over the frames, gives every outcome back, and counts what the last turn asked for.
+fn allocations_of_following(mode: Mode) -> u64 {
+    let frames: Vec<Frame> = (0..6).map(|step| frame(2 * step)).collect();
+    let landmarks = landmarks()
+        .into_iter()
+        .enumerate()
+        .map(|(at, landmark)| Arc::new(Landmark { id: format!("block-{at}"), ..landmark }));
+    let set = LandmarkSet { landmarks: landmarks.collect(), ..LandmarkSet::default() };
+    let mut follow = Follow::new(FollowOptions { mode, ..FollowOptions::default() }, set);
+    let mut sequence = 0;
+    let mut turn = || {
+        for frame in frames.iter().chain(frames.iter().rev()) {
+            sequence += 1;
+            let captured_at = Timestamp { nanos: 33_333_333 * sequence as i64 };
+            let outcome = follow.on_frame(frame, FrameStamp { sequence, captured_at }, &mut NoProbe);
+            assert_eq!(outcome.landmarks.iter().filter(|landmark| landmark.result.is_ok()).count(), 4);
+            follow.recycle(outcome);
+        }
+    };
+    (0..4).for_each(|_| turn());
+    allocations(turn)
+}
+
+#[test]
+fn following_faithfully_allocates_nothing_in_the_steady_state() {
+    assert_eq!(allocations_of_following(Mode::Faithful), 0);
+}
+
+/// Patches of the picture around every object are made anew for each frame; what they take must not grow unnoticed.
+#[test]
+fn following_adaptively_allocates_within_bounds() {
+    let (frames, objects) = (12, 4);
+    let counted = allocations_of_following(Mode::Adaptive);
+    assert!(
+        counted < 350 * frames * objects,
+        "{counted} allocations for {objects} objects in {frames} frames"
+    );
 }
