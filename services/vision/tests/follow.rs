@@ -3,6 +3,8 @@
 mod scene;
 
 use scene::{Block, GREY, HEIGHT, RED, WIDTH, picture, red_landmark, seen, set_of, stamp};
+use vision::frame::decode::{DecodeLimits, decode};
+use vision::frame::encode::{Quality, encode_jpeg};
 use vision::{Follow, FollowOptions, Landmark, Miss, Mode, NoProbe, ShapeClass};
 
 fn follower() -> Follow {
@@ -24,6 +26,22 @@ fn a_block_is_measured_to_a_fraction_of_a_pixel_from_the_first_frame_on() {
         assert!(sighting.centroid.distance_px(block.centre()) < 0.3, "frame {k}: {:?}", sighting.centroid);
         assert!((sighting.area_px2 / 484.0 - 1.0).abs() < 0.06, "frame {k}: {}", sighting.area_px2);
         assert!(sighting.outline.len() >= 4);
+    }
+}
+
+#[test]
+fn a_face_turned_to_the_light_belongs_to_its_block() {
+    let mut follow = follower();
+    for k in 0..40 {
+        let front = Block { color: [180, 53, 35], ..moving(k) };
+        let top = Block { y: front.y - 6.0, height: 6.0, color: [255, 75, 50], ..front };
+        let encoded = encode_jpeg(&picture(&[front, top], 1.0, k), Quality::default()).unwrap();
+        let frame = decode(&encoded, &DecodeLimits::default()).unwrap();
+        let outcome = follow.on_frame(&frame, stamp(k), &mut NoProbe);
+        let [(_, sighting)] = seen(&outcome)[..] else { panic!("frame {k}: {:?}", outcome.landmarks) };
+        let whole = Block { y: top.y, height: front.height + 6.0, ..front };
+        let off_px = sighting.centroid.distance_px(whole.centre());
+        assert!(off_px < 0.3, "frame {k}: off by {off_px} px, {} px²", sighting.area_px2);
     }
 }
 

@@ -114,10 +114,15 @@ fn object_colours(frame: &Frame, seed: &Patch) -> Vec<Cluster> {
     colours
 }
 
-/// Colours around the seed that are not the landmark's own.
+/// Colours around the seed that are not the landmark's own, nor mixtures with those of a lit face beside the seed.
 fn background_colours(frame: &Frame, seed: &Patch, near: &Patch, likeness: &Likeness) -> Vec<Cluster> {
-    let ring = near.without(&seed.dilated(2));
     let foreign = |pixel: &[u8; 3]| !likeness.matches(*pixel) && !likeness.is_lit_face(*pixel);
+    let ring = near.without(&seed.dilated(2));
+    let lit =
+        ring.only(|x, y| likeness.is_lit_face(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32)));
+    let clear = ring.without(&lit.dilated(2));
+    // A sign has one face, and lettering of any colour.
+    let ring = if likeness.face().is_none() && 3 * clear.count() >= ring.count() { clear } else { ring };
     palette(sampled(frame, &ring).filter(foreign), RADIUS, BACKGROUND_COLOURS)
 }
 
