@@ -17,6 +17,7 @@ pub(crate) mod palette;
 pub(crate) mod patch;
 mod segment;
 mod shadow;
+pub(crate) mod sharpness;
 mod soft_edge;
 mod tracing;
 mod window;

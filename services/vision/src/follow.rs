@@ -16,7 +16,7 @@ pub use state::{FollowState, LandmarkState, Track};
 use std::fmt;
 use std::sync::Arc;
 
-use crate::adaptive::{Finder, Likeness, Search, Tracer, noise};
+use crate::adaptive::{Finder, Likeness, Search, Tracer, noise, sharpness};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
 use crate::landmark::{Landmark, LandmarkSet};
@@ -92,6 +92,7 @@ struct Scene<'a> {
     frame: &'a Frame,
     captured_at: Timestamp,
     noise_variance: [f32; 3],
+    blur_px: f32,
     options: FollowOptions,
 }
 
@@ -105,8 +106,8 @@ impl<'a> Scene<'a> {
         gain: f32,
         seeds: usize,
     ) -> Search<'a> {
-        let noise_variance = self.noise_variance;
-        Search { frame: self.frame, region, landmark, likeness, gain, noise_variance, limit: seeds }
+        let Self { frame, noise_variance, blur_px, .. } = *self;
+        Search { frame, region, landmark, likeness, gain, noise_variance, blur_px, limit: seeds }
     }
 }
 
@@ -212,6 +213,7 @@ impl Follow {
             frame,
             captured_at: stamp.captured_at,
             noise_variance: self.state.noise_variance,
+            blur_px: self.blur_px(frame),
             options: self.options,
         };
         let landmarks = self.register_all(&scene, probe);
@@ -235,6 +237,13 @@ impl Follow {
             }
         }
         self.lists.outcomes = outcomes;
+    }
+
+    /// The frame's blur where anything asks for it: what is written on signs.
+    fn blur_px(&self, frame: &Frame) -> f32 {
+        let lettered = |landmark: &Arc<Landmark>| landmark.shape.is_sign();
+        let asked = self.options.mode == Mode::Adaptive && self.set.landmarks.iter().any(lettered);
+        if asked { sharpness::blur_px(frame) } else { 0.0 }
     }
 
     /// Every landmark, in the order of the set. Those that are followed come first; the others begin with the one

@@ -71,6 +71,11 @@ impl ShapeClass {
         matches!(self, Self::Rectangle | Self::Octagon | Self::Triangle | Self::Circle)
     }
 
+    /// Whether objects of this class are as wide as high, with no corner that stands out.
+    pub(crate) const fn is_round(self) -> bool {
+        matches!(self, Self::Octagon | Self::Circle)
+    }
+
     /// The name used on the command line and on pages.
     #[must_use]
     pub const fn name(self) -> &'static str {

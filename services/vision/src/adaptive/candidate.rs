@@ -33,6 +33,8 @@ const DISC_SIZE_PX: u32 = 20;
 /// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
 /// apart on small signs.
 const PALEST: [f32; 3] = [0.3, 0.45, 0.62];
+/// And alone, without the sign's own shades, whose tolerances a brick wall may meet: of round signs.
+const DEEP_TINT: f32 = 0.84;
 /// Deeper than any colour: only the sign's own shades count, which tell it from a brick wall behind it.
 const OWN_SHADES: f32 = 2.0;
 /// Where something scores so much, rectangles are not looked for by these, since half a bush behind a post has their form;
@@ -49,6 +51,8 @@ pub(crate) struct Search<'a> {
     /// The gain that is most likely.
     pub(crate) gain: f32,
     pub(crate) noise_variance: [f32; 3],
+    /// Standard deviation of the frame's blur.
+    pub(crate) blur_px: f32,
     /// At most this many seeds are looked at closely.
     pub(crate) limit: usize,
 }
@@ -73,6 +77,8 @@ pub(crate) struct Candidate {
     pub(crate) score: f32,
     /// The same if something covers a part of it.
     pub(crate) score_if_covered: f32,
+    /// The same if it is one more beside others that are known.
+    pub(crate) score_if_further: f32,
 }
 
 impl Candidate {
@@ -117,12 +123,14 @@ impl Finder {
         } else {
             let palest = search.likeness.with_palest(PALEST[0]);
             marker.mark(search.frame, search.region, &palest, like);
-            for palest in PALEST.into_iter().chain([OWN_SHADES]) {
+            let deep_tint = search.landmark.shape.is_round().then_some(DEEP_TINT);
+            for palest in PALEST.into_iter().chain(deep_tint).chain([OWN_SHADES]) {
                 if palest == OWN_SHADES && is_clear(&found) && search.landmark.shape == ShapeClass::Rectangle
                 {
                     break;
                 }
                 let likeness = search.likeness.with_palest(palest);
+                let likeness = if palest == DEEP_TINT { likeness.by_tint_alone() } else { likeness };
                 marker.refine(search.frame, search.region, &likeness, like, deep);
                 components.find(deep);
                 from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
@@ -233,17 +241,20 @@ fn whole_block(seen: Patch, form: Form) -> (Patch, Form) {
 /// A sign too small to show its outline, near a seed.
 fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
     let face = search.likeness.face()?;
-    let round = matches!(search.landmark.shape, ShapeClass::Octagon | ShapeClass::Circle);
     let bounds = seed.bounds()?;
-    if !round || bounds.width.max(bounds.height) > DISC_SIZE_PX {
+    if !search.landmark.shape.is_round() || bounds.width.max(bounds.height) > DISC_SIZE_PX {
         return None;
     }
     let found = disc::find(search.frame, seed.rect, bounds, face)?;
-    let form = Form { lettering: found.lettering, ..Form::ROUND };
+    let (disc_px, seed_px) = (found.mask.count(), seed.count());
+    let common_px = seed_px - seed.without(&found.mask).count();
+    let fitted = Some(common_px as f32 / (disc_px + seed_px - common_px) as f32);
+    let form = Form { lettering: found.lettering, fitted, ..Form::ROUND };
     let edge = border(search, &found.mask);
     let mut candidate = measured(search, found.mask, &form, edge)?;
     candidate.score *= found.clear.sqrt();
     candidate.score_if_covered *= found.clear.sqrt();
+    candidate.score_if_further *= found.clear.sqrt();
     // Mixed pixels all around are most of so small a sign: the fitted disc tells its middle better than they do.
     candidate.centroid = found.centre;
     Some(candidate)
@@ -252,7 +263,7 @@ fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
 fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Option<Candidate> {
     let (centroid, area_px2) = soft_edge::centroid_and_area(search.frame, &object, edge)?;
     let (window_px, observed) = window::best(search, &object, area_px2)?;
-    let score = choose::score(search, &object, form, area_px2, &observed);
+    let factors = choose::factors(search, &object, form, area_px2, &observed);
     let cut = object.touches_border(search.frame.width(), search.frame.height());
     let gain = search.likeness.nearest(observed.mean).gain;
     let tolerance_scale = search.likeness.tolerance_scale(search.landmark, gain);
@@ -265,8 +276,9 @@ fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Opti
         window_px,
         tolerance_scale,
         cut,
-        score: score.whole,
-        score_if_covered: score.covered,
+        score: factors.whole(),
+        score_if_covered: factors.covered(),
+        score_if_further: factors.further(),
     })
 }
 

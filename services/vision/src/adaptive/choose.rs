@@ -2,6 +2,7 @@
 
 use super::candidate::Search;
 use super::patch::{Patch, enclosing_rectangle_area, polygon_area_and_centroid};
+use crate::geometry::PointPx;
 use crate::landmark::{ColorStats, ShapeClass};
 
 /// An object of this area is as likely a speck as a landmark, px².
@@ -14,7 +15,26 @@ const FACE_SCALE: f32 = 0.65;
 const RESOLVED_AREA_PX2: f32 = 110.0;
 /// A rectangle, far away and askew, fills this much of the smallest one around it.
 const FULL_RECTANGLE: f32 = 0.84;
+/// Of an octagon, a disc or what blur makes of them, the hull is at least this round
+const ROUND: f32 = 0.90;
+/// and fills at most this much of the smallest rectangle around it.
+const FULL_ROUND: f32 = 0.88;
+/// What is smaller shows no outline, px²: a disc that is fitted to its tint tells more than the pixels of its mask.
+const OUTLINE_AREA_PX2: f32 = 100.0;
+/// How much less a mask of that size says.
+const UNFITTED: f32 = 0.75;
+/// A fitted disc and the pixels it was fitted to have this part of their union in common,
+const FITTING: f32 = 0.38;
+/// and this part where it is one more beside others that are known: a disc of its tint can be fitted across any red kerb.
+const FITTING_WELL: f32 = 0.6;
+/// Lettering of a sign of so many blurs across is a smear, and of so many is clear.
+const SMEARED: f32 = 8.0;
+const CLEAR: f32 = 14.0;
+/// A plain object too small for its blur has a middle deeper than its ring by about this, a sign has not.
+const PLAIN_SMEAR: f32 = 0.2;
+
 /// The form of an object.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Form {
     /// Area over the area of the convex hull, 0..1.
     pub(crate) solidity: f32,
@@ -22,14 +42,24 @@ pub(crate) struct Form {
     pub(crate) elongation: f32,
     /// Area of the convex hull over the area of the smallest rectangle around it, 0..1: 0.79 of a disc.
     pub(crate) fullness: f32,
+    /// 4πA/P² of the convex hull, 0..1: 0.95 of an octagon, 0.79 of a square.
+    pub(crate) roundness: f32,
+    /// Of a disc that was fitted to pixels: what both have in common as a part of what they cover together.
+    pub(crate) fitted: Option<f32>,
     /// Evidence of lettering that its form gave, as a part of a clear face's.
     pub(crate) lettering: f32,
 }
 
 impl Form {
     /// Of a disc.
-    pub(crate) const ROUND: Self =
-        Self { solidity: 1.0, elongation: 1.0, fullness: std::f32::consts::FRAC_PI_4, lettering: 0.0 };
+    pub(crate) const ROUND: Self = Self {
+        solidity: 1.0,
+        elongation: 1.0,
+        fullness: std::f32::consts::FRAC_PI_4,
+        roundness: 1.0,
+        fitted: None,
+        lettering: 0.0,
+    };
 
     pub(crate) fn of(object: &Patch) -> Self {
         let area = object.count() as f32;
@@ -39,6 +69,8 @@ impl Form {
             solidity: (area / hull_area.max(1.0)).min(1.0),
             elongation: elongation(object),
             fullness: (hull_area / enclosing_rectangle_area(&hull).max(1.0)).min(1.0),
+            roundness: roundness(&hull, hull_area),
+            fitted: None,
             lettering: 0.0,
         }
     }
@@ -55,6 +87,16 @@ impl Form {
         (-(too_long / 0.25).powi(2)).exp() * self.suits_if_covered(shape)
     }
 
+    /// How well it can be a lettered sign that is round, 0..1.
+    fn suits_round(&self, area_px2: f32, least_fitting: f32) -> f32 {
+        let Some(fitted) = self.fitted else {
+            let (angular, full) = ((ROUND - self.roundness).max(0.0), (self.fullness - FULL_ROUND).max(0.0));
+            let outline = (-(angular / 0.05).powi(2) - (full / 0.06).powi(2)).exp();
+            return if area_px2 < OUTLINE_AREA_PX2 { UNFITTED * outline } else { outline };
+        };
+        (-((least_fitting - fitted).max(0.0) / 0.15).powi(2)).exp()
+    }
+
     /// The same if something may cover a part of it: what is left of a convex form has any length, but is convex.
     fn suits_if_covered(&self, shape: ShapeClass) -> f32 {
         let least_solid = if shape == ShapeClass::Block { 0.8 } else { 0.6 };
@@ -63,6 +105,13 @@ impl Form {
         let too_round = (least_full - self.fullness).max(0.0);
         (-(too_ragged / 0.15).powi(2) - (too_round / 0.06).powi(2)).exp()
     }
+}
+
+/// 4πA/P² of a polygon.
+fn roundness(hull: &[PointPx], area_px2: f32) -> f32 {
+    let sides = hull.iter().zip(hull.iter().cycle().skip(1));
+    let perimeter_px: f32 = sides.map(|(from, to)| from.distance_px(*to)).sum();
+    (4.0 * std::f32::consts::PI * area_px2 / perimeter_px.powi(2).max(1.0)).min(1.0)
 }
 
 fn elongation(object: &Patch) -> f32 {
@@ -86,46 +135,121 @@ fn elongation(object: &Patch) -> f32 {
     ((half + root) / (half - root).max(1e-3)).sqrt() as f32
 }
 
-/// How much an object looks like the landmark, 0..1.
+/// How much an object looks like the landmark, 0..1 each, 1 where nothing speaks against it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Score {
+pub(crate) struct Factors {
+    /// Specks are as likely anything.
+    pub(crate) size: f32,
+    /// What surrounds it looks otherwise.
+    pub(crate) isolation: f32,
+    /// The light on it is the expected one.
+    pub(crate) light: f32,
+    /// Its colour under that light is the landmark's.
+    pub(crate) colour: f32,
+    /// It is as plain, or as lettered, as the landmark is.
+    pub(crate) texture: f32,
+    /// The same where what cannot be seen counts as missing.
+    pub(crate) texture_shown: f32,
+    /// Its form suits the shape class.
+    pub(crate) form: f32,
+    /// The same where that must be seen clearly.
+    pub(crate) form_shown: f32,
+    /// The same if something may cover a part of it.
+    pub(crate) form_if_covered: f32,
+    /// Brings different kinds of landmarks to one scale: the exponent of the product.
+    scale: f32,
+}
+
+impl Factors {
     /// When all of it is in view.
-    pub(crate) whole: f32,
+    pub(crate) fn whole(&self) -> f32 {
+        (self.surely() * self.form).powf(self.scale)
+    }
+
     /// When something may cover a part of it.
-    pub(crate) covered: f32,
+    pub(crate) fn covered(&self) -> f32 {
+        (self.surely() * self.form_if_covered).powf(self.scale)
+    }
+
+    /// When it is one object more beside others that are known: that needs to be seen.
+    pub(crate) fn further(&self) -> f32 {
+        Self { texture: self.texture_shown, form: self.form_shown, ..*self }.whole()
+    }
+
+    fn surely(&self) -> f32 {
+        self.size * self.isolation * self.light * self.colour * self.texture
+    }
 }
 
 /// How much the object looks like the landmark.
-pub(crate) fn score(
+pub(crate) fn factors(
     search: &Search<'_>,
     object: &Patch,
     form: &Form,
     area_px2: f32,
     observed: &ColorStats,
-) -> Score {
+) -> Factors {
     let off = |value: f32, sigma: f32| (-0.5 * (value / sigma).powi(2)).exp();
-    let size = area_px2 / (area_px2 + SPECK_AREA_PX2);
-    let surely = size * isolation(search, object);
-    let (look, scale) = if let Some(face) = search.likeness.face() {
+    let shape = search.landmark.shape;
+    let plain = Factors {
+        size: area_px2 / (area_px2 + SPECK_AREA_PX2),
+        isolation: isolation(search, object),
+        light: 1.0,
+        colour: 1.0,
+        texture: 1.0,
+        texture_shown: 1.0,
+        form: form.suits(shape),
+        form_shown: form.suits(shape),
+        form_if_covered: form.suits_if_covered(shape),
+        scale: 1.0,
+    };
+    if let Some(face) = search.likeness.face() {
         let seen = face.compare(face_pixels(search, object).map(|(color, _)| color));
-        let light = off((seen.color.gain / search.gain).max(1e-3).ln(), 0.4);
         let pale = face.pale_middle(face_pixels(search, object));
+        let round = |least_fitting: f32| {
+            if shape.is_round() { form.suits_round(area_px2, least_fitting) } else { 1.0 }
+        };
+        let resolved = resolved(search, area_px2);
         let (lettering, sigma) =
-            if area_px2 >= RESOLVED_AREA_PX2 { (seen.lettering, 1.0) } else { (0.0, 1.5) };
+            if area_px2 >= RESOLVED_AREA_PX2 { (resolved * seen.lettering, 1.0) } else { (0.0, 1.5) };
         let evidence = lettering.max(pale).max(form.lettering).max(0.0);
         let lettered = (evidence * (1.0 + PLAIN_FACE) / (evidence + PLAIN_FACE)).min(1.0);
-        (light * off(seen.color.excess, sigma) * lettered, FACE_SCALE)
+        // What cannot be seen speaks neither for nor against it; that a middle is deep can be seen for longer.
+        let smear = if form.fitted.is_some() { pale.max(form.lettering) } else { pale };
+        let unresolved = lettered.max((1.0 + (smear + 0.02) / PLAIN_SMEAR).clamp(0.3, 1.0));
+        Factors {
+            light: off((seen.color.gain / search.gain).max(1e-3).ln(), 0.4),
+            colour: off(seen.color.excess, sigma),
+            texture_shown: lettered,
+            texture: resolved * lettered + (1.0 - resolved) * unresolved,
+            // Half a bush is as likely as half a sign, which shows only half of what is written on it.
+            form: plain.form * round(FITTING),
+            form_shown: plain.form * round(FITTING_WELL),
+            form_if_covered: plain.form * round(FITTING),
+            scale: FACE_SCALE,
+            ..plain
+        }
     } else {
         let color = search.likeness.nearest(observed.mean);
-        let light = off((color.gain / search.gain).max(1e-3).ln(), 0.25);
-        (light * off(color.excess, 0.7) * off(variance_excess(search, observed), 3.0), 1.0)
-    };
-    let of_form = |suits: f32| (surely * look * suits).powf(scale);
-    let shape = search.landmark.shape;
-    let whole = of_form(form.suits(shape));
-    // Half a bush is as likely as half a sign, which shows only half of what is written on it.
-    let lettered = search.likeness.face().is_some();
-    Score { whole, covered: if lettered { whole } else { of_form(form.suits_if_covered(shape)) } }
+        let texture = off(variance_excess(search, observed), 3.0);
+        Factors {
+            light: off((color.gain / search.gain).max(1e-3).ln(), 0.25),
+            colour: off(color.excess, 0.7),
+            texture,
+            texture_shown: texture,
+            ..plain
+        }
+    }
+}
+
+/// How much of a sign's lettering can be seen through the frame's blur, 0..1.
+fn resolved(search: &Search<'_>, area_px2: f32) -> f32 {
+    // Nothing but its lettering tells a far rectangle from half a bush.
+    if !search.landmark.shape.is_round() {
+        return 1.0;
+    }
+    let diameter_px = (4.0 * area_px2 / std::f32::consts::PI).sqrt();
+    ((diameter_px / search.blur_px - SMEARED) / (CLEAR - SMEARED)).clamp(0.0, 1.0)
 }
 
 /// The pixels of an object without its edge, each with its distance from the middle as a part of the radius.

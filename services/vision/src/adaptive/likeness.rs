@@ -30,6 +30,8 @@ const LIT_SPREAD: f32 = 14.0;
 #[derive(Clone, Debug)]
 pub(crate) struct Likeness {
     cones: Vec<Cone>,
+    /// So many of them are asked whether a pixel matches.
+    asked: usize,
     /// The face of a lettered sign as a whole, where the descriptor tells it.
     face: Option<Face>,
 }
@@ -84,7 +86,8 @@ impl Likeness {
         let far = face::far_view(landmark);
         let plain =
             landmark.shades.iter().enumerate().filter(|(at, _)| Some(*at) != far).map(|(_, shade)| shade);
-        Self { cones: plain.map(cone).collect(), face: far.and_then(|at| Face::of(landmark, at, gain)) }
+        let cones: Vec<Cone> = plain.map(cone).collect();
+        Self { asked: cones.len(), cones, face: far.and_then(|at| Face::of(landmark, at, gain)) }
     }
 
     /// The same, but tints paler than `palest` (a part of the pure shade's distance from grey) are not the landmark's.
@@ -100,7 +103,12 @@ impl Likeness {
             widening: STRICT * cone.widening,
             ..*cone
         };
-        Self { cones: self.cones.iter().map(strict).collect(), face: self.face }
+        Self { cones: self.cones.iter().map(strict).collect(), ..self.clone() }
+    }
+
+    /// The same, but only the tint says what matches.
+    pub(crate) fn by_tint_alone(self) -> Self {
+        Self { asked: 0, ..self }
     }
 
     /// The widest channel's tolerance under a light of `gain` over the descriptor's.
@@ -116,7 +124,8 @@ impl Likeness {
     /// Whether a pixel may be the landmark's.
     pub(crate) fn matches(&self, pixel: [u8; 3]) -> bool {
         let color = pixel.map(f32::from);
-        self.face.is_some_and(|face| face.has_tint(color)) || self.cones.iter().any(|cone| cone.holds(color))
+        self.face.is_some_and(|face| face.has_tint(color))
+            || self.cones[..self.asked].iter().any(|cone| cone.holds(color))
     }
 
     /// For each of up to 64 pixels whether it may be the landmark's, the first in bit 0. The same as
@@ -132,7 +141,7 @@ impl Likeness {
             }
         }
         let mut found = [0_u8; 64];
-        for cone in &self.cones {
+        for cone in &self.cones[..self.asked] {
             for at in 0..64 {
                 found[at] |= cone.holds([levels[0][at], levels[1][at], levels[2][at]]) as u8;
             }
@@ -153,7 +162,10 @@ impl Likeness {
 
     /// What tells at a glance that no pixel of a run matches.
     pub(crate) fn coarse(&self) -> Coarse {
-        Coarse::new(self.cones.iter().map(Cone::bounds), self.face.as_ref().map(Face::least_differences))
+        Coarse::new(
+            self.cones[..self.asked].iter().map(Cone::bounds),
+            self.face.as_ref().map(Face::least_differences),
+        )
     }
 
     /// Whether a colour is a vivid shade's with more light on it than a whole object gets: a face turned to the light.

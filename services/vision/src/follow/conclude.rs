@@ -71,7 +71,8 @@ fn welcome(
     let mut next = further.into_iter().peekable();
     while let Some(candidate) = next.next() {
         let least = least_score.max(FURTHER_PART * best_score.max(usual.score));
-        if candidate.score < least || candidate.area_px2 < least_size * usual.area_px2 {
+        let score = if state.tracks.is_empty() { candidate.score } else { candidate.score_if_further };
+        if score < least || candidate.area_px2 < least_size * usual.area_px2 {
             continue;
         }
         if state.tracks.len() >= scene.options.max_instances as usize {

@@ -23,8 +23,10 @@ const KNOWN_AFTER: u32 = 3;
 const COVERED_PART: f32 = 0.75;
 /// A part of an object lies within so many of its radii: corners reach further than the disc of the same area.
 const WITHIN: f32 = 1.25;
-/// Seeds looked at closely in a gate and in the whole frame.
+/// Seeds looked at closely in a gate and in the whole frame,
 const SEEDS: (usize, usize) = (4, 12);
+/// and for a round lettered sign, of which lettering leaves several, among red kerbs and cars.
+const ROUND_SIGN_SEEDS: (usize, usize) = (8, 24);
 
 /// Whether more than one object was ever seen that looks like the landmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +45,10 @@ pub(super) struct Pursuit {
     pub(super) full_frame: bool,
     /// Where the nearest thing is that looks like it and cannot be it.
     pub(super) elsewhere: Option<PointPx>,
+}
+
+fn seeds(landmark: &Landmark, likeness: &Likeness) -> (usize, usize) {
+    if landmark.shape.is_round() && likeness.face().is_some() { ROUND_SIGN_SEEDS } else { SEEDS }
 }
 
 /// Registers one landmark and updates what is known of it.
@@ -108,7 +114,13 @@ fn in_gate(
         return pursuit;
     }
     let likeness = Likeness::followed(landmark, track.gain, scene.noise_variance);
-    let mut seen = finder.candidates(&scene.search(landmark, region, &likeness, track.gain, SEEDS.0));
+    let mut seen = finder.candidates(&scene.search(
+        landmark,
+        region,
+        &likeness,
+        track.gain,
+        seeds(landmark, &likeness).0,
+    ));
     let taken = |candidate: &Candidate| {
         others.iter().filter_map(|other| other.found.as_ref()).any(|found| found.covers(candidate.centroid))
     };
@@ -164,7 +176,7 @@ fn anywhere(
     state.frames_since_search = 0;
     let gain = state.tracks.first().map_or(1.0, |track| track.gain);
     let likeness = Likeness::anywhere(landmark, gain, scene.noise_variance);
-    Some(finder.candidates(&scene.search(landmark, region, &likeness, gain, SEEDS.1)))
+    Some(finder.candidates(&scene.search(landmark, region, &likeness, gain, seeds(landmark, &likeness).1)))
 }
 
 /// Takes up a lost object where the whole frame shows one that can be it: far away only where no other one was ever seen
