@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // a test ends where its preparation fails
 
+#[path = "fuzz_targets/targets.rs"]
 mod targets;
 
 use std::path::Path;
