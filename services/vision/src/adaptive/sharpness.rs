@@ -22,13 +22,13 @@ const SHARPER_THAN: f32 = 0.7;
 pub(crate) fn blur_px(frame: &Frame) -> f32 {
     let mut counts = [0_u32; STEPS + 1];
     let width = frame.width() as usize;
-    if width <= 2 * BESIDE + 1 {
+    if width <= 2 * BESIDE + 1 || frame.height() == 0 {
         return USUAL_PX;
     }
     for row in (0..ROWS).map(|row| frame.row((2 * row + 1) * frame.height() / (2 * ROWS))) {
         let level = |x: usize| u32::from(row[3 * x + 1]);
         for x in BESIDE..width - BESIDE - 1 {
-            let contrast = level(x + 1 + BESIDE - 1).abs_diff(level(x - BESIDE + 1));
+            let contrast = level(x + BESIDE).abs_diff(level(x + 1 - BESIDE));
             let step = level(x + 1).abs_diff(level(x));
             let steepest =
                 step >= level(x).abs_diff(level(x - 1)) && step > level(x + 2).abs_diff(level(x + 1));
@@ -81,5 +81,6 @@ mod tests {
         let plain = Frame::from_rgb(64, 48, vec![90; 3 * 64 * 48]).unwrap();
         assert_eq!(blur_px(&plain), USUAL_PX);
         assert_eq!(blur_px(&Frame::from_rgb(3, 3, vec![90; 27]).unwrap()), USUAL_PX);
+        assert_eq!(blur_px(&Frame::from_rgb(12, 0, Vec::new()).unwrap()), USUAL_PX);
     }
 }
