@@ -146,7 +146,8 @@ async fn single<T: Send + Sync + 'static>(
     query.finish()?;
     let picture = camera.wait(after).await?;
     let bytes = camera.views.view(&picture, &request).await?;
-    Ok(with_provenance(&picture, format, bytes))
+    let response = ([(CONTENT_TYPE, format.content_type())], bytes).into_response();
+    Ok(with_provenance(&picture, response))
 }
 
 /// A picture and what was seen in it, in one answer: neither can be of another frame.
@@ -168,11 +169,7 @@ async fn seen<T: Send + Sync + 'static>(
     let picture = camera.wait(after).await?;
     let bytes = camera.views.view(&picture, &request).await?;
     let told = camera.views.told(&picture)?;
-    let mut response = told_picture(format, &bytes, told.as_deref());
-    response
-        .headers_mut()
-        .extend(provenance(&picture).map(|(name, value)| (HeaderName::from_static(name), value)));
-    Ok(response)
+    Ok(with_provenance(&picture, told_picture(format, &bytes, told.as_deref())))
 }
 
 impl<T: Send + Sync + 'static> Camera<T> {
@@ -205,10 +202,9 @@ async fn motion<T: Send + Sync + 'static>(
     Ok(stream(Arc::clone(camera), request, Duration::from_secs(1) / fps, slot))
 }
 
-fn with_provenance<T>(picture: &Picture<T>, format: Format, bytes: Bytes) -> Response {
-    let mut response = picture_answer(picture.sequence, picture.captured_at_ns, format, bytes);
-    let age = HeaderValue::from(age_ms(picture));
-    response.headers_mut().insert(HeaderName::from_static(AGE), age);
+fn with_provenance<T>(picture: &Picture<T>, mut response: Response) -> Response {
+    let named = provenance(picture).map(|(name, value)| (HeaderName::from_static(name), value));
+    response.headers_mut().extend(named);
     response
 }
 

@@ -239,10 +239,10 @@ impl Follow {
         self.lists.outcomes = outcomes;
     }
 
-    /// The frame's blur where anything asks for it: what is written on signs.
+    /// The frame's blur where anything asks for it: what is written on round signs.
     fn blur_px(&self, frame: &Frame) -> f32 {
-        let lettered = |landmark: &Arc<Landmark>| landmark.shape.is_sign();
-        let asked = self.options.mode == Mode::Adaptive && self.set.landmarks.iter().any(lettered);
+        let is_round = |landmark: &Arc<Landmark>| landmark.shape.is_round();
+        let asked = self.options.mode == Mode::Adaptive && self.set.landmarks.iter().any(is_round);
         if asked { sharpness::blur_px(frame) } else { 0.0 }
     }
 

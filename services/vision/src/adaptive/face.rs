@@ -5,6 +5,7 @@
 //! another mean, and its pale pixels, which are mixtures with what stands around it, are no lighter than the others.
 
 use super::likeness::Match;
+use super::palette::dot;
 use crate::landmark::{ColorStats, Landmark};
 
 /// How far a channel of the face's mean may be off, levels: lettering is never resolved twice in the same way.
@@ -171,9 +172,4 @@ fn brightness(color: [f32; 3]) -> f32 {
 fn away_from_grey(color: [f32; 3]) -> [f32; 3] {
     let grey = brightness(color);
     color.map(|level| level - grey)
-}
-
-#[inline(always)]
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -39,6 +39,18 @@ pub(crate) fn nearest(clusters: &[Cluster], color: [f32; 3]) -> Option<(usize, f
     with_distance.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
+/// From one colour to another.
+#[inline(always)]
+pub(crate) fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Scalar product of two colours.
+#[inline(always)]
+pub(crate) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 /// A pixel as levels.
 pub(crate) fn levels(pixel: [u8; 3]) -> [f32; 3] {
     pixel.map(f32::from)

@@ -6,7 +6,7 @@
 //! penumbras change.
 
 use super::likeness::Likeness;
-use super::palette::{Cluster, levels};
+use super::palette::{Cluster, dot, levels, minus};
 use super::patch::{Patch, polygon_area_and_centroid};
 use crate::frame::Frame;
 
@@ -270,12 +270,4 @@ fn least_aside(color: [f32; 3], directions: &[[f32; 3]]) -> f32 {
 fn unit(color: [f32; 3]) -> [f32; 3] {
     let length = dot(color, color).sqrt().max(1e-3);
     color.map(|level| level / length)
-}
-
-fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

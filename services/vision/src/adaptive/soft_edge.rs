@@ -2,7 +2,7 @@
 //!
 //! That part is told from the pixel's colour, between the object's colour next to it and the background's next to it.
 
-use super::palette::levels;
+use super::palette::{dot, levels, minus};
 use super::patch::{Patch, set_bits};
 use crate::frame::Frame;
 use crate::geometry::PointPx;
@@ -99,14 +99,6 @@ fn share_of_two(color: [f32; 3], own: [f32; 3], border: [f32; 3], other: [f32; 3
     let of_own = (dot(p, a) * bb - dot(p, b) * ab) / determinant;
     let of_border = (dot(p, b) * aa - dot(p, a) * ab) / determinant;
     Some((of_own + of_border).clamp(0.0, 1.0))
-}
-
-fn minus(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// What a neighbour at a distance of (dx, dy) weighs: near ones tell more of the light on the edge than far ones.
