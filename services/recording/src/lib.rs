@@ -46,5 +46,5 @@ pub use options::{Compression, JournalOptions, PreTrigger, QueueBounds, Retentio
 pub use queue::Offered;
 pub use recorder::{Now, Recorder};
 pub use status::{State, Status};
-pub use storage::{Disk, RecordingFile, Space, Storage};
+pub use storage::{Disk, DiskFile, RecordingFile, Space, Storage};
 pub use writer::FileWriter;

@@ -9,8 +9,12 @@ use rustix::fs::{CWD, RenameFlags};
 
 use crate::file_name::{FINISHED, FileName, STARTING};
 
+mod disk_file;
 #[cfg(test)]
 pub(crate) mod faulty;
+
+pub(crate) use disk_file::BLOCK_BYTES;
+pub use disk_file::DiskFile;
 
 /// Room on a file system, bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,13 +25,13 @@ pub struct Space {
     pub total_bytes: u64,
 }
 
-/// A file that is being written, append only.
+/// A file that is being written, from its beginning to its end.
 pub trait RecordingFile: Send + Sync {
-    /// Appends some of `bytes`, as [`io::Write::write`] does.
-    fn append(&self, bytes: &[u8]) -> io::Result<usize>;
-    /// Makes everything appended durable (`fdatasync`).
+    /// Writes some of `bytes` at `offset`, which is in the file or at its end, and says how many, as `pwrite` does.
+    fn write_at(&self, bytes: &[u8], offset: u64) -> io::Result<usize>;
+    /// Makes everything written durable (`fdatasync`).
     fn sync(&self) -> io::Result<()>;
-    /// Cuts the file to `length` bytes and appends there from now on.
+    /// Cuts the file to `length` bytes.
     fn truncate(&self, length: u64) -> io::Result<()>;
 }
 
@@ -79,33 +83,15 @@ impl Disk {
     }
 }
 
-impl RecordingFile for fs::File {
-    fn append(&self, bytes: &[u8]) -> io::Result<usize> {
-        let mut file = self;
-        io::Write::write(&mut file, bytes)
-    }
-
-    fn sync(&self) -> io::Result<()> {
-        self.sync_data()
-    }
-
-    fn truncate(&self, length: u64) -> io::Result<()> {
-        self.set_len(length)?;
-        let mut file = self;
-        io::Seek::seek(&mut file, io::SeekFrom::Start(length)).map(drop)
-    }
-}
-
 impl Storage for Disk {
-    type File = fs::File;
+    type File = DiskFile;
 
-    fn create_new(&mut self, name: &str) -> io::Result<fs::File> {
+    fn create_new(&mut self, name: &str) -> io::Result<DiskFile> {
         fs::create_dir_all(&self.directory)?;
         // Locked until it is closed, so that start-up recovery of another process leaves it alone; it gets its
         // name only then, so that there is no moment in which a recording stands there unlocked.
         let starting = self.path(&format!("{name}{STARTING}"));
-        let file = fs::File::options().write(true).create_new(true).open(&starting)?;
-        file.try_lock().map_err(io::Error::from)?;
+        let file = DiskFile::create_locked(&starting)?;
         if let Err(error) = rename_new(&starting, &self.path(name)) {
             let _ = fs::remove_file(&starting);
             return Err(error);

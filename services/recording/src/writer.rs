@@ -4,51 +4,21 @@
 //! whether the disk took it. A message counts as stored when its chunk has been synced; after a failed
 //! write the file is cut back to the last whole chunk, so that what is in it equals what was counted.
 
-use std::{
-    collections::BTreeMap,
-    io::{self, BufWriter, Write},
-    sync::{
-        Arc,
-        atomic::{AtomicU64, Ordering},
-    },
-};
+use std::{collections::BTreeMap, io, sync::Arc};
 
 use bytes::Bytes;
-use mcap::{records::MessageHeader, write::NoSeek};
+use mcap::records::MessageHeader;
 
 use crate::{
     Attachment, ChannelSpec, Ledger, Message, RecordingError, RecordingFile, WriterOptions,
     account::TopicAccount,
 };
+use growing_end::{GrowingEnd, Written};
+
+mod growing_end;
 
 /// Name of the metadata record with the file's accounts: topic → JSON of [`TopicAccount`].
 pub(crate) const ACCOUNTS_RECORD: &str = "waymark.accounts";
-
-/// The library's many small writes around each chunk are gathered; chunks pass through uncopied.
-const GATHER_BYTES: usize = 16 << 10;
-
-/// The growing end of a file, shared by the MCAP writer, which appends, and [`FileWriter`], which syncs and
-/// cuts.
-struct Tail<F> {
-    file: F,
-    appended_bytes: AtomicU64,
-}
-
-struct Appender<F>(Arc<Tail<F>>);
-
-impl<F: RecordingFile> Write for Appender<F> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let appended = self.0.file.append(bytes)?;
-        self.0.appended_bytes.fetch_add(appended as u64, Ordering::Relaxed);
-        Ok(appended)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-type McapWriter<F> = mcap::Writer<NoSeek<BufWriter<Appender<F>>>>;
 
 /// A channel of this file and how far its messages have got.
 struct OpenChannel {
@@ -75,8 +45,8 @@ pub enum Purpose {
 
 /// One MCAP file being written.
 pub struct FileWriter<F: RecordingFile> {
-    mcap: McapWriter<F>,
-    tail: Arc<Tail<F>>,
+    mcap: mcap::Writer<GrowingEnd<F>>,
+    written: Arc<Written<F>>,
     options: WriterOptions,
     channels: Vec<OpenChannel>,
     chunk_bytes: usize,
@@ -89,19 +59,17 @@ pub struct FileWriter<F: RecordingFile> {
 impl<F: RecordingFile> FileWriter<F> {
     /// Begins an MCAP file in the empty `file`.
     pub fn begin(file: F, options: &WriterOptions) -> Result<Self, RecordingError> {
-        let tail = Arc::new(Tail { file, appended_bytes: AtomicU64::new(0) });
-        let sink = BufWriter::with_capacity(GATHER_BYTES, Appender(Arc::clone(&tail)));
+        let written = Arc::new(Written::new(file));
         let mcap = mcap::WriteOptions::new()
             .profile("")
             .library(&options.library)
             .compression(options.compression.as_mcap())
             .compression_threads(0)
             .chunk_size(None)
-            .disable_seeking(true)
-            .create(NoSeek::new(sink))?;
+            .create(GrowingEnd::new(Arc::clone(&written)))?;
         Ok(Self {
             mcap,
-            tail,
+            written,
             options: options.clone(),
             channels: Vec::new(),
             chunk_bytes: 0,
@@ -192,23 +160,23 @@ impl<F: RecordingFile> FileWriter<F> {
         accounts.add(lost);
         self.write_metadata(ACCOUNTS_RECORD, accounts.to_metadata())?;
         self.mcap.finish()?;
-        self.whole_bytes = self.tail.appended_bytes.load(Ordering::Relaxed);
+        self.whole_bytes = self.written.bytes();
         self.sync_whole().map_err(RecordingError::Write)
     }
 
     /// Gives up after an error: cuts the file back to its last whole chunk and says what is not in it.
     pub fn abandon(mut self) -> Abandoned {
-        // Nothing of the broken chunk may reach the file from the writers' buffers when they are dropped.
-        let (sink, _lost_buffer) = self.mcap.into_inner().into_inner().into_parts();
-        drop(sink);
-        let kept_to = match self.tail.file.truncate(self.whole_bytes).and_then(|()| self.tail.file.sync()) {
-            Ok(()) => self.whole_bytes,
-            Err(_) => self.synced_bytes,
-        };
+        // Dropped as it is, the library's writer would finish the file.
+        drop(self.mcap.into_inner());
+        let kept_to =
+            match self.written.file.truncate(self.whole_bytes).and_then(|()| self.written.file.sync()) {
+                Ok(()) => self.whole_bytes,
+                Err(_) => self.synced_bytes,
+            };
         let keeps_unsynced = kept_to == self.whole_bytes;
         if !keeps_unsynced {
             // The disk may refuse this too; recovery then finds a little more than was promised.
-            let _ = self.tail.file.truncate(kept_to);
+            let _ = self.written.file.truncate(kept_to);
         }
         let mut lost = self.unplaced;
         for channel in &mut self.channels {
@@ -240,7 +208,7 @@ impl<F: RecordingFile> FileWriter<F> {
 
     fn close_chunk(&mut self) -> Result<(), RecordingError> {
         self.mcap.flush()?;
-        self.whole_bytes = self.tail.appended_bytes.load(Ordering::Relaxed);
+        self.whole_bytes = self.written.bytes();
         self.chunk_bytes = 0;
         for channel in &mut self.channels {
             let closed = std::mem::take(&mut channel.in_chunk);
@@ -254,7 +222,7 @@ impl<F: RecordingFile> FileWriter<F> {
         if self.synced_bytes == self.whole_bytes {
             return Ok(());
         }
-        self.tail.file.sync()?;
+        self.written.file.sync()?;
         self.synced_bytes = self.whole_bytes;
         for channel in &mut self.channels {
             let synced = std::mem::take(&mut channel.unsynced);

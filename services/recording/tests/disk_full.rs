@@ -1,4 +1,4 @@
-//! A real full disk: a tmpfs of 4 MiB. Needs the right to mount; skipped loudly without.
+//! Real full disks: a tmpfs of 4 MiB, and an ext4 in a file. Needs the right to mount; skipped loudly without.
 
 #![allow(clippy::unwrap_used, reason = "a test ends where its preparation fails")]
 
@@ -15,16 +15,28 @@ use recording::{
     reader::{MessageReader, Strictness},
 };
 
-/// A mounted tmpfs that is unmounted in the end.
+/// A mounted file system that is unmounted in the end.
 struct SmallDisk(tempfile::TempDir);
 
 impl SmallDisk {
-    fn mount() -> Option<Self> {
+    /// In memory.
+    fn tmpfs() -> Option<Self> {
+        Self::mount(["-t", "tmpfs", "-o", "size=4m", "waymark-test"])
+    }
+
+    /// In the file `image`: one that is written past the page cache.
+    fn ext4(image: &Path) -> Option<Self> {
+        std::fs::File::create(image).unwrap().set_len(6 << 20).unwrap();
+        let mut format = Command::new("mkfs.ext4");
+        let formatted = format.args(["-q", "-m", "0"]).arg(image).output();
+        let formatted = formatted.is_ok_and(|output| output.status.success());
+        formatted.then(|| Self::mount(["-t", "ext4", "-o", "loop", image.to_str().unwrap()]))?
+    }
+
+    fn mount<'a>(how: impl IntoIterator<Item = &'a str>) -> Option<Self> {
         let directory = tempfile::tempdir().unwrap();
-        let mut mount = Command::new("mount");
-        mount.args(["-t", "tmpfs", "-o", "size=4m", "waymark-test"]).arg(directory.path());
-        let mounted = mount.output().is_ok_and(|output| output.status.success());
-        mounted.then_some(Self(directory))
+        let mounted = Command::new("mount").args(how).arg(directory.path()).output();
+        mounted.is_ok_and(|output| output.status.success()).then_some(Self(directory))
     }
 
     fn path(&self) -> &Path {
@@ -81,10 +93,22 @@ fn messages_in(directory: &Path) -> u64 {
 
 #[test]
 fn a_full_disk_is_survived_and_every_loss_is_counted() {
-    let Some(disk) = SmallDisk::mount() else {
-        eprintln!("SKIPPED: no right to mount the 4 MiB tmpfs that this test fills");
-        return;
-    };
+    match SmallDisk::tmpfs() {
+        Some(disk) => fill(&disk),
+        None => eprintln!("SKIPPED: no right to mount the 4 MiB tmpfs that this test fills"),
+    }
+}
+
+#[test]
+fn a_full_disk_that_is_written_past_the_page_cache_is_survived_too() {
+    let directory = tempfile::tempdir().unwrap();
+    match SmallDisk::ext4(&directory.path().join("image")) {
+        Some(disk) => fill(&disk),
+        None => eprintln!("SKIPPED: no right to mount the 6 MiB ext4 that this test fills, or no mkfs.ext4"),
+    }
+}
+
+fn fill(disk: &SmallDisk) {
     let ballast = disk.path().join("ballast");
     std::fs::write(&ballast, vec![0; 1 << 20]).unwrap();
     let mut options = JournalOptions::new(disk.path(), "car");

@@ -79,8 +79,8 @@ struct SlowDisk(FaultyDisk, Arc<Mutex<mpsc::Receiver<()>>>);
 struct SlowFile(<FaultyDisk as Storage>::File, Arc<Mutex<mpsc::Receiver<()>>>);
 
 impl RecordingFile for SlowFile {
-    fn append(&self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.0.append(bytes)
+    fn write_at(&self, bytes: &[u8], offset: u64) -> std::io::Result<usize> {
+        self.0.write_at(bytes, offset)
     }
 
     fn sync(&self) -> std::io::Result<()> {

@@ -50,11 +50,14 @@ impl Platter {
 }
 
 impl RecordingFile for FaultyFile {
-    fn append(&self, bytes: &[u8]) -> io::Result<usize> {
+    fn write_at(&self, bytes: &[u8], offset: u64) -> io::Result<usize> {
         let mut platter = self.disk.platter();
-        let fits = bytes.len().min(platter.free_bytes() as usize);
+        let free_bytes = platter.free_bytes() as usize;
         let content = platter.files.get_mut(&self.name).ok_or(io::ErrorKind::NotFound)?;
-        content.extend_from_slice(&bytes[..fits]);
+        let offset = offset as usize;
+        let fits = bytes.len().min(content.len() + free_bytes - offset);
+        content.resize(content.len().max(offset + fits), 0);
+        content[offset..offset + fits].copy_from_slice(&bytes[..fits]);
         if fits == 0 && !bytes.is_empty() { Err(io::ErrorKind::StorageFull.into()) } else { Ok(fits) }
     }
 
