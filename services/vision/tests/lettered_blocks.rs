@@ -34,6 +34,25 @@ fn the_colour_that_goes_all_around_is_learned_and_not_the_face_in_it() {
 }
 
 #[test]
+fn gloss_on_parts_of_the_frame_does_not_make_the_face_the_landmark() {
+    let reds = [[205, 25, 35], [222, 50, 58], [230, 78, 86]];
+    let [_, face, letter] = lettered(80.0, 60.0);
+    let bands = reds.iter().enumerate().map(|(band, &color)| {
+        let height = SIDE_PX / 3.0;
+        Block { x: 80.0, y: 60.0 + band as f32 * height, width: SIDE_PX, height, color }
+    });
+    let blocks: Vec<Block> = bands.chain([face, Block { color: reds[1], ..letter }]).collect();
+    let region = RectPx { x: 80, y: 60, width: SIDE_PX as u32, height: SIDE_PX as u32 };
+    let options = LearnOptions { shape: ShapeClass::Block, ..LearnOptions::default() };
+    let learned = learn(&[(&picture(&blocks, 1.0, 1), region)], &options).unwrap();
+    for shade in &learned.shades {
+        assert!(shade.mean[0] - shade.mean[1] > 120.0, "{:?}", learned.shades);
+    }
+    let tones = |gloss: f32| learned.shades.iter().any(|shade| (shade.mean[1] - gloss).abs() < 12.0);
+    assert!(tones(25.0) && tones(78.0), "{:?}", learned.shades);
+}
+
+#[test]
 fn the_face_belongs_to_the_block() {
     let mut follow = Follow::new(FollowOptions::default(), set_of(vec![landmark()]));
     for k in 0..20 {

@@ -1,7 +1,7 @@
 //! Which pixels of a bounding box are the object's: colours that fill its middle and are rare around it.
 
 use super::windows::{Sample, stats};
-use crate::adaptive::palette::{Cluster, levels, nearest, palette};
+use crate::adaptive::palette::{Cluster, dot, levels, nearest, palette};
 use crate::adaptive::patch::{Patch, polygon_area_and_centroid};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
@@ -13,12 +13,20 @@ fn palette_radius(region: RectPx) -> f32 {
     22.0 + (2.0 * (20.0 - side)).clamp(0.0, 18.0)
 }
 const PALETTE_LIMIT: usize = 24;
-/// How many times denser than outside the box a colour must be in its middle to be the object's.
+/// How many times denser than outside the box a colour must be in its middle to be the object's,
 const DENSITY_RATIO: f32 = 3.0;
+/// and what part of it at least.
+const LEAST_OWN: f32 = 0.02;
 /// Shades that cover less of the object are left to convex filling and soft edges.
 const MIN_SHARE: f32 = 0.10;
 /// A shade of which less lies outside another's outline is an inlay in it.
 const OUTSIDE_PART: f32 = 0.2;
+/// Colours nearer to grey have no direction to speak of, levels.
+const LEAST_TINT: f32 = 20.0;
+/// How far another tone of a colour is from grey, over how far the colour itself is.
+const TINT_PART: std::ops::Range<f32> = 0.65..1.55;
+/// Cosine of the angle between tones of one colour, seen from grey.
+const SAME_DIRECTION: f32 = 0.96;
 
 /// The object's shades in one region and the pixels that show them.
 pub(super) fn sample(frame: &Frame, region: RectPx) -> Sample {
@@ -61,10 +69,11 @@ fn neighbourhood(frame: &Frame, region: RectPx) -> RectPx {
     RectPx { x, y, width, height }
 }
 
-/// For each colour whether it is the object's: much denser in the middle of the box than around the box.
+/// For each colour whether it is the object's: much denser in the middle of the box than around the box, or a tone of
+/// such a colour that is much denser in the box.
 fn object_colours(frame: &Frame, region: RectPx, colours: &[Cluster]) -> Vec<bool> {
-    let mut middle = vec![0_u32; colours.len()];
-    let mut around = vec![0_u32; colours.len()];
+    let none = vec![0_u32; colours.len()];
+    let (mut middle, mut edge, mut around) = (none.clone(), none.clone(), none);
     let near = neighbourhood(frame, region);
     for y in near.y..near.y + near.height {
         for x in near.x..near.x + near.width {
@@ -72,14 +81,20 @@ fn object_colours(frame: &Frame, region: RectPx, colours: &[Cluster]) -> Vec<boo
             match place(region, x, y) {
                 Place::Middle => middle[at] += 1,
                 Place::Around => around[at] += 1,
-                Place::Edge => {}
+                Place::Edge => edge[at] += 1,
             }
         }
     }
     let share = |counts: &[u32], at: usize| counts[at] as f32 / counts.iter().sum::<u32>().max(1) as f32;
-    let ratio = |at: usize| share(&middle, at) / (share(&around, at) + 0.005);
+    let dense = |counts: &[u32], at: usize| {
+        share(counts, at) >= LEAST_OWN && share(counts, at) >= DENSITY_RATIO * (share(&around, at) + 0.005)
+    };
+    let fills: Vec<bool> = (0..colours.len()).map(|at| dense(&middle, at)).collect();
+    let tone_of_own = |at: usize| {
+        (0..colours.len()).any(|own| fills[own] && same_tint(colours[own].mean, colours[at].mean))
+    };
     let mut own: Vec<bool> =
-        (0..colours.len()).map(|at| ratio(at) >= DENSITY_RATIO && share(&middle, at) >= 0.02).collect();
+        (0..colours.len()).map(|at| fills[at] || (dense(&edge, at) && tone_of_own(at))).collect();
     // A box inside a larger thing of the same colour has no outside: its commonest colour must do.
     if !own.contains(&true)
         && let Some(best) =
@@ -125,26 +140,30 @@ fn place(region: RectPx, x: u32, y: u32) -> Place {
     }
 }
 
-/// Takes lettering, inlays, borders and mixed edge pixels away: what stays is the colour that spans the object, its darker
-/// and lighter tones, and other faces of some extent beside it. What lies inside belongs to the object by its outline.
+/// Takes lettering, inlays, borders and mixed edge pixels away: what stays is the colour that spans the object, its darker,
+/// lighter and glossier tones, and other faces of some extent beside it. What lies inside belongs to the object by its
+/// outline.
 fn keep_shades(region: RectPx, labels: &[Option<usize>], colours: &[Cluster]) -> Vec<Option<usize>> {
-    let shades: Vec<Shade> = (0..colours.len()).map(|shade| Shade::of(region, labels, shade)).collect();
     let object = labels.iter().flatten().count().max(1) as f32;
-    let by_merit = |a: &usize, b: &usize| shades[*a].merit().total_cmp(&shades[*b].merit());
-    let Some(main) = (0..colours.len()).max_by(by_merit) else { return labels.to_vec() };
-    let outline = shades[main].body.convex();
+    let tones_of = |main: usize, at: usize| at == main || same_tint(colours[main].mean, colours[at].mean);
+    let colour = |main: usize| Shade::of(region, labels, |at| tones_of(main, at));
+    let seen = |main: &usize| labels.contains(&Some(*main));
+    let by_merit = |a: &(usize, Shade), b: &(usize, Shade)| a.1.merit().total_cmp(&b.1.merit());
+    let all = (0..colours.len()).filter(seen).map(|main| (main, colour(main)));
+    let Some((main, spanning)) = all.max_by(by_merit) else { return labels.to_vec() };
+    let outline = spanning.body.convex();
     let keep: Vec<bool> = (0..colours.len())
         .map(|at| {
-            let shade = &shades[at];
+            let shade = Shade::of(region, labels, |other| other == at);
             let large = shade.pixels as f32 >= MIN_SHARE * object;
-            let beside = shade.is_solid() && !shade.lies_inside(&outline);
-            at == main || (large && (beside || same_shading(colours[main].mean, colours[at].mean)))
+            let tone = tones_of(main, at) || same_shading(colours[main].mean, colours[at].mean);
+            at == main || (large && (tone || (shade.is_solid() && !shade.lies_inside(&outline))))
         })
         .collect();
     labels.iter().map(|label| label.filter(|&shade| keep[shade])).collect()
 }
 
-/// Where one shade shows in a region.
+/// Where one shade, or several as one, show in a region.
 struct Shade {
     all: Patch,
     pixels: usize,
@@ -153,9 +172,9 @@ struct Shade {
 }
 
 impl Shade {
-    fn of(region: RectPx, labels: &[Option<usize>], shade: usize) -> Self {
+    fn of(region: RectPx, labels: &[Option<usize>], is_one: impl Fn(usize) -> bool) -> Self {
         let all = Patch::from_fn(region, |x, y| {
-            labels[y as usize * region.width as usize + x as usize] == Some(shade)
+            labels[y as usize * region.width as usize + x as usize].is_some_and(&is_one)
         });
         Self { pixels: all.count(), body: all.opened(1), all }
     }
@@ -185,8 +204,18 @@ impl Shade {
 
 /// Whether `other` is `main` under more or less light: nearly proportional colours.
 pub(super) fn same_shading(main: [f32; 3], other: [f32; 3]) -> bool {
-    let dot = |a: [f32; 3], b: [f32; 3]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f32>();
     let gain = dot(main, other) / dot(main, main).max(1.0);
     let rest = (0..3).map(|c| (other[c] - gain * main[c]).powi(2)).sum::<f32>();
     (0.4..2.2).contains(&gain) && rest.sqrt() <= 18.0 * gain.max(1.0)
+}
+
+/// Whether two vivid colours are one under gloss or haze, which add some white: the same direction from grey, nearly as
+/// far. What is farther is a mixture with something else.
+fn same_tint(main: [f32; 3], other: [f32; 3]) -> bool {
+    let tint = |color: [f32; 3]| color.map(|level| level - color.iter().sum::<f32>() / 3.0);
+    let (main, other) = (tint(main), tint(other));
+    let (length, other_length) = (dot(main, main).sqrt(), dot(other, other).sqrt());
+    length >= LEAST_TINT
+        && TINT_PART.contains(&(other_length / length))
+        && dot(main, other) >= SAME_DIRECTION * length * other_length
 }
