@@ -6,7 +6,9 @@
 use prost_reflect::{DescriptorPool, DynamicMessage, ReflectMessage as _, SerializeOptions};
 use vision::{Landmark, LandmarkSet};
 
-use crate::convert::{InvalidField, landmark_draft_from_wire, landmark_to_wire, set_from_wire, set_to_wire};
+use crate::convert::{
+    InvalidField, landmark_draft_from_wire, landmark_from_wire, landmark_to_wire, set_from_wire, set_to_wire,
+};
 use crate::payload::{WAYMARK_DESCRIPTORS, WireMessage};
 use crate::v1;
 
@@ -72,6 +74,26 @@ pub fn set_from_json(text: &str) -> Result<LandmarkSet, LandmarkFileError> {
 /// As [`landmark_to_json`].
 pub fn set_to_json(set: &LandmarkSet) -> Result<String, LandmarkFileError> {
     to_json(&set_to_wire(set))
+}
+
+/// Reads landmarks that are no set: several may have one id.
+///
+/// # Errors
+/// As [`landmark_from_json`].
+pub fn landmarks_from_json(text: &str) -> Result<Vec<Landmark>, LandmarkFileError> {
+    let wire: v1::LandmarkSet = from_json(text)?;
+    wire.landmarks.iter().map(|landmark| Ok(landmark_from_wire(landmark)?.0)).collect()
+}
+
+/// Landmarks that are no set as a file's text: a `waymark.v1.LandmarkSet` without a manifest.
+///
+/// # Errors
+/// As [`landmark_to_json`].
+pub fn landmarks_to_json<'a>(
+    landmarks: impl IntoIterator<Item = &'a Landmark>,
+) -> Result<String, LandmarkFileError> {
+    let landmarks = landmarks.into_iter().map(|landmark| landmark_to_wire(landmark, 0)).collect();
+    to_json(&v1::LandmarkSet { manifest: None, landmarks })
 }
 
 /// A message of `waymark.v1` in the protobuf JSON mapping, indented.

@@ -107,7 +107,7 @@ impl Drives {
         let latch = Latch::Repeat(LatchKey("~manifest".to_owned()));
         self.store("/leader/manifest", stamp, &manifest_of(set), latch);
         self.recorder.attach(
-            &Attachment {
+            Attachment {
                 name: "landmarks.json".to_owned(),
                 media_type: "application/json".to_owned(),
                 log_time_ns: START_NS as u64,

@@ -78,7 +78,10 @@ impl Drive {
                 frame.truth = Some(truth);
             }
             RecordedItem::Damage(damage) => self.damage.push(damage.to_string()),
-            RecordedItem::Landmarks(_) | RecordedItem::State(_) | RecordedItem::Calibration { .. } => {}
+            RecordedItem::Landmarks(_)
+            | RecordedItem::Superseded(_)
+            | RecordedItem::State(_)
+            | RecordedItem::Calibration { .. } => {}
         }
     }
 }

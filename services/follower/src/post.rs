@@ -18,7 +18,7 @@ use crate::config::FollowerConfig;
 use crate::counters::IntakeCounters;
 use crate::error::FollowerError;
 use crate::intake::Intake;
-use crate::results::{Results, Surroundings};
+use crate::results::{Calibrated, Results};
 use crate::station::{Losses, Station};
 use crate::topics::CameraTopics;
 use crate::web::Face;
@@ -63,7 +63,7 @@ impl Post {
         let (every, waiting) = mpsc::channel(WAITING_RESULTS);
         let (latest, newest) = watch::channel(None);
         let (pinhole, known) = watch::channel(None);
-        let surroundings = Surroundings { landmarks: landmarks.clone(), pinhole: known };
+        let calibrated = Calibrated(known);
         let options = config.follow_options();
         let no_thread = |source| FollowerError::Thread { camera: id.to_string(), source };
         let thread = CameraThread::spawn(id.as_str(), options, landmarks, Outlets { every, latest })
@@ -79,9 +79,9 @@ impl Post {
         let (mailbox, journal_of_intake) = (thread.mailbox(), Arc::clone(journal));
         let intake =
             Intake::new(topics.clone(), journal_of_intake, mailbox, video.queue(), Arc::clone(&counters));
-        let of_station = surroundings.clone();
+        let of_station = calibrated.clone();
         let results =
-            Results::declare(session, own, &id, topics, options, Arc::clone(journal), surroundings).await?;
+            Results::declare(session, own, &id, topics, options, Arc::clone(journal), calibrated).await?;
         let slot = burned_in.as_ref().map(BurnedIn::slot);
         let losses = Losses {
             intake: counters,

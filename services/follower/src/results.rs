@@ -8,7 +8,7 @@ use prost::Message;
 use recording::{Journal, Latch, LatchKey};
 use tokio::sync::{mpsc, watch};
 use vision::follow::FollowOptions;
-use vision::{LandmarkSet, Outcome, Pinhole, Place, places};
+use vision::{Pinhole, Place, places};
 use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
 use waymark_proto::{annotations, convert, foxglove, v1};
 use zenoh::Session;
@@ -22,18 +22,14 @@ use crate::tap::Entry;
 use crate::topics::CameraTopics;
 use crate::web::Face;
 
-/// What places are computed with.
+/// The camera, once its calibration is known.
 #[derive(Clone, Debug)]
-pub(crate) struct Surroundings {
-    /// The landmarks in force, for their sizes.
-    pub(crate) landmarks: watch::Receiver<Arc<LandmarkSet>>,
-    /// The camera, once its calibration is known.
-    pub(crate) pinhole: watch::Receiver<Option<Pinhole>>,
-}
+pub(crate) struct Calibrated(pub(crate) watch::Receiver<Option<Pinhole>>);
 
-impl Surroundings {
-    pub(crate) fn places(&self, outcome: &Outcome) -> Vec<Place> {
-        places(outcome, &self.landmarks.borrow(), self.pinhole.borrow().as_ref())
+impl Calibrated {
+    /// Where the landmarks of a frame are.
+    pub(crate) fn places(&self, registered: &Registered) -> Vec<Place> {
+        places(&registered.outcome, &registered.landmarks, self.0.borrow().as_ref())
     }
 }
 
@@ -42,7 +38,7 @@ pub(crate) struct Results {
     topics: CameraTopics,
     options: FollowOptions,
     journal: Arc<Journal>,
-    surroundings: Surroundings,
+    calibrated: Calibrated,
     burned_in: Option<burned_in::Slot>,
     registrations: Outbound,
     annotations: Outbound,
@@ -56,7 +52,7 @@ impl Results {
         topics: CameraTopics,
         options: FollowOptions,
         journal: Arc<Journal>,
-        surroundings: Surroundings,
+        calibrated: Calibrated,
     ) -> Result<Self, FollowerError> {
         let registrations = Outbound::declare::<v1::Registration>(
             session,
@@ -74,7 +70,7 @@ impl Results {
             topics,
             options,
             journal,
-            surroundings,
+            calibrated,
             burned_in: None,
             registrations: registrations.await?,
             annotations: annotations.await?,
@@ -105,7 +101,8 @@ impl Results {
     async fn publish(&self, camera: &str, registered: &Registered) {
         let outcome = &registered.outcome;
         let captured_at_ns = outcome.captured_at.nanos;
-        let registration = convert::registration_to_wire(camera, outcome, &self.surroundings.places(outcome));
+        let registration =
+            convert::registration_to_wire(camera, outcome, &self.calibrated.places(registered));
         let registration = registration.encode_to_vec();
         let annotations = annotations::annotations(outcome).encode_to_vec();
         let state = convert::follow_state_to_wire(camera, &self.options, &registered.state).encode_to_vec();

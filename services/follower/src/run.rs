@@ -81,16 +81,18 @@ pub async fn run_on(
     let journal = Arc::new(Journal::start(journal_options(&config))?);
     let file = SetFile::new(state, &config.leader);
     let feed = LandmarkFeed::new(session.clone(), leader.clone(), file)?;
-    let posts = man_posts(&config, &own, &session, &journal, &feed.landmarks()).await?;
+    let topics = VehicleTopics::new(&own, &leader);
+    let first_set = Arc::clone(&feed.landmarks().borrow());
+    let log = LandmarkLog::begin(Arc::clone(&journal), topics.clone(), &first_set);
+    let posts = man_posts(&config, &own, &session, &journal, &log.in_force()).await?;
     let (fleet, watching) = FleetWatch::new(session.clone(), own.fleet(), shutdown.clone());
     let watch = LeaderWatch::begin(&session, &leader, feed.last_heard(), fleet).await?;
     let face = Arc::new(Face::new(&config, identity.instance, &session, &feed, watch, &posts, &journal));
     let beacon = StatusBeacon::declare(&session, &own, Arc::clone(&face)).await?;
     let policy = config.http.policy()?;
 
-    let topics = VehicleTopics::new(&own, &leader);
     let mut tasks = JoinSet::new();
-    tasks.spawn(LandmarkLog::new(Arc::clone(&journal), topics.clone()).run(feed.landmarks()));
+    tasks.spawn(log.run(feed.landmarks()));
     tasks.spawn(watching);
     tasks.spawn(beacon.run(topics, shutdown.clone()));
     tasks.spawn(follow_landmarks(feed, shutdown.clone()));

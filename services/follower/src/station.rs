@@ -14,7 +14,7 @@ use vision::Place;
 use crate::burned_in;
 use crate::counters::IntakeCounters;
 use crate::fps::RateMeter;
-use crate::results::Surroundings;
+use crate::results::Calibrated;
 use crate::status::{CameraStatus, Dropped, landmarks_from_outcome};
 use crate::tap::now_ns;
 
@@ -36,7 +36,7 @@ pub(crate) struct Station {
     mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
     losses: Losses,
     latest: watch::Receiver<Option<Arc<Registered>>>,
-    surroundings: Surroundings,
+    calibrated: Calibrated,
     rate: Mutex<RateMeter>,
 }
 
@@ -46,10 +46,10 @@ impl Station {
         mailbox: Arc<Mailbox<Arc<EncodedFrame>>>,
         losses: Losses,
         latest: watch::Receiver<Option<Arc<Registered>>>,
-        surroundings: Surroundings,
+        calibrated: Calibrated,
     ) -> Self {
         let rate = Mutex::new(RateMeter::over(RATE_SPAN));
-        Self { id: id.to_owned(), mailbox, losses, latest, surroundings, rate }
+        Self { id: id.to_owned(), mailbox, losses, latest, calibrated, rate }
     }
 
     pub(crate) fn id(&self) -> &str {
@@ -97,7 +97,7 @@ impl Station {
 
     /// Where the landmarks of a frame are.
     pub(crate) fn places(&self, registered: &Registered) -> Vec<Place> {
-        self.surroundings.places(&registered.outcome)
+        self.calibrated.places(registered)
     }
 
     /// How the camera is now.

@@ -19,6 +19,8 @@ use crate::mailbox::Mailbox;
 pub struct Registered {
     /// The picture as it arrived.
     pub picture: Arc<EncodedFrame>,
+    /// What was looked for.
+    pub landmarks: Arc<LandmarkSet>,
     /// What was seen in it.
     pub outcome: Outcome,
     /// What the outcome of the next picture depends on.
@@ -86,10 +88,11 @@ impl CameraThread {
     ) -> std::io::Result<Self> {
         let mailbox = Arc::new(Mailbox::default());
         let counters = Arc::new(CameraCounters::default());
-        let first_set = landmarks.borrow().as_ref().clone();
+        let in_force = Arc::clone(&landmarks.borrow());
         let worker = Worker {
             camera: id.to_owned(),
-            follow: Follow::new(options, first_set),
+            follow: Follow::new(options, in_force.as_ref().clone()),
+            in_force,
             landmarks,
             outlets,
             counters: Arc::clone(&counters),
@@ -122,6 +125,8 @@ impl CameraThread {
 struct Worker {
     camera: String,
     follow: Follow,
+    /// What it follows.
+    in_force: Arc<LandmarkSet>,
     landmarks: watch::Receiver<Arc<LandmarkSet>>,
     outlets: Outlets,
     counters: Arc<CameraCounters>,
@@ -144,8 +149,8 @@ impl Worker {
 
     fn adopt_landmarks(&mut self) {
         if self.landmarks.has_changed().unwrap_or(false) {
-            let set = self.landmarks.borrow_and_update().as_ref().clone();
-            self.follow.set_landmarks(set);
+            self.in_force = Arc::clone(&self.landmarks.borrow_and_update());
+            self.follow.set_landmarks(self.in_force.as_ref().clone());
         }
     }
 
@@ -159,7 +164,8 @@ impl Worker {
         self.pixels = frame.into_rgb();
         let (decode_time, register_time) = (decoded - started, finished_at - decoded);
         let state = self.follow.state();
-        Ok(Registered { picture, outcome, state, decode_time, register_time, finished_at })
+        let landmarks = Arc::clone(&self.in_force);
+        Ok(Registered { picture, landmarks, outcome, state, decode_time, register_time, finished_at })
     }
 
     fn hand_on(&self, registered: Registered) {

@@ -23,6 +23,10 @@ use crate::picture_message::{NoPicture, PictureKind};
 /// Name of the attachment that holds the landmark set in force, as JSON.
 pub const LANDMARKS_ATTACHMENT: &str = "landmarks.json";
 
+/// Name of the attachment that holds landmarks that were in force until a moment before, as JSON: a camera may still
+/// have looked for them in the file's first pictures.
+pub const SUPERSEDED_ATTACHMENT: &str = "landmarks.superseded.json";
+
 /// What stands behind the topics of results that were found later, in the recording, and not by the follower.
 pub const AGAIN: &str = "/again";
 
@@ -47,6 +51,8 @@ pub enum RecordedItem {
     },
     /// From here on, these landmarks are in force.
     Landmarks(LandmarkSet),
+    /// Landmarks that were in force until a moment before.
+    Superseded(Vec<Landmark>),
     /// What was seen in a picture when it was captured.
     Registration {
         /// The camera.
@@ -134,6 +140,12 @@ impl RecordedItems {
                     .map(|landmark| (landmark.id.clone(), (**landmark).clone()))
                     .collect();
                 self.adopt(set)
+            }
+            Step::Record(mcap::records::Record::Attachment { header, data, .. })
+                if header.name == SUPERSEDED_ATTACHMENT =>
+            {
+                let superseded = json::landmarks_from_json(&String::from_utf8_lossy(&data)).ok()?;
+                Some(RecordedItem::Superseded(superseded))
             }
             Step::Record(_) | Step::Chunk(_) => None,
         }

@@ -179,8 +179,8 @@ impl<S: Storage> JournalThread<S> {
         match taken.item {
             Some(Item::Messages(batch)) => self.recorder.store(batch, now),
             Some(Item::Keep(message)) => self.recorder.keep(&message),
-            Some(Item::Attach(attachment)) => self.recorder.attach(&attachment, now),
-            Some(Item::Forget(key)) => self.recorder.forget(&key),
+            Some(Item::Attach(attachment)) => self.recorder.attach(attachment, now),
+            Some(Item::Forget(key)) => self.recorder.forget(key),
             Some(Item::Command(command)) => self.recorder.command(command, now),
             None => {}
         }

@@ -24,8 +24,8 @@ impl Latched {
         self.messages.remove(key);
     }
 
-    pub(crate) fn keep_attachment(&mut self, attachment: &Attachment) {
-        self.attachments.insert(attachment.name.clone(), attachment.clone());
+    pub(crate) fn keep_attachment(&mut self, attachment: Attachment) {
+        self.attachments.insert(attachment.name.clone(), attachment);
     }
 
     pub(crate) fn messages(&self) -> impl Iterator<Item = &Message> {

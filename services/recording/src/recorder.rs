@@ -7,8 +7,11 @@ use std::time::Duration;
 
 use crate::{
     Attachment, Command, FileName, FileWriter, JournalOptions, Latch, LatchKey, Ledger, Message,
-    RecordingError, Rotation, State, Status, Storage, file_name::is_vehicle, latched::Latched,
-    pre_trigger::PreTriggerBuffer, writer::Purpose,
+    RecordingError, Rotation, State, Status, Storage,
+    file_name::is_vehicle,
+    latched::Latched,
+    pre_trigger::{Passing, PreTriggerBuffer},
+    writer::Purpose,
 };
 use seam::Seam;
 use snapshots::SnapshotSchedule;
@@ -109,12 +112,7 @@ impl<S: Storage> Recorder<S> {
     pub fn store(&mut self, batch: Vec<Message>, now: Now) {
         let Some(first_log_time_ns) = batch.first().map(|message| message.log_time_ns) else { return };
         match &mut self.phase {
-            Phase::Off => {
-                for evicted in self.pre_trigger.push(batch) {
-                    self.pass_by(&evicted);
-                }
-                return;
-            }
+            Phase::Off => return self.let_pass(Passing::Messages(batch)),
             Phase::Recording(file) => {
                 if file.is_full(&self.options.rotation, now) {
                     file.seam.ask(now.elapsed);
@@ -133,18 +131,25 @@ impl<S: Storage> Recorder<S> {
     }
 
     /// Keeps `attachment` for the heads of later files and writes it into the open one.
-    pub fn attach(&mut self, attachment: &Attachment, now: Now) {
-        self.latched.keep_attachment(attachment);
-        if let Phase::Recording(file) = &mut self.phase
-            && let Err(error) = file.writer.attach(attachment)
-        {
-            self.fail(&error, now);
+    pub fn attach(&mut self, attachment: Attachment, now: Now) {
+        match &mut self.phase {
+            Phase::Off => return self.let_pass(Passing::Attachment(attachment)),
+            Phase::Failed { .. } => {}
+            Phase::Recording(file) => {
+                if let Err(error) = file.writer.attach(&attachment) {
+                    self.fail(&error, now);
+                }
+            }
         }
+        self.latched.keep_attachment(attachment);
     }
 
     /// Stops repeating the state `key`.
-    pub fn forget(&mut self, key: &LatchKey) {
-        self.latched.forget(key);
+    pub fn forget(&mut self, key: LatchKey) {
+        match self.phase {
+            Phase::Off => self.let_pass(Passing::Forgotten(key)),
+            Phase::Recording(_) | Phase::Failed { .. } => self.latched.forget(&key),
+        }
     }
 
     /// Counts messages that never reached the recorder.
@@ -187,8 +192,8 @@ impl<S: Storage> Recorder<S> {
     /// Closes the open file. What was offered by now is settled afterwards.
     pub fn finish(&mut self, now: Now) {
         self.close(now);
-        for batch in self.pre_trigger.drain() {
-            self.pass_by(&batch);
+        for passing in self.pre_trigger.drain() {
+            self.pass_by(passing);
         }
     }
 
@@ -235,11 +240,15 @@ impl<S: Storage> Recorder<S> {
     }
 
     fn start(&mut self, now: Now) {
+        let first_log_time_ns = self.pre_trigger.begins_at_ns().unwrap_or(now.unix_ns);
         let kept = self.pre_trigger.drain();
-        let first_log_time_ns = kept.front().and_then(|b| b.first()).map_or(now.unix_ns, |m| m.log_time_ns);
         self.reopen(first_log_time_ns, now);
-        for batch in kept {
-            batch.iter().for_each(|message| self.store_one(message, now));
+        for passing in kept {
+            match passing {
+                Passing::Messages(batch) => batch.iter().for_each(|message| self.store_one(message, now)),
+                Passing::Attachment(attachment) => self.attach(attachment, now),
+                Passing::Forgotten(key) => self.forget(key),
+            }
         }
     }
 
@@ -271,11 +280,24 @@ impl<S: Storage> Recorder<S> {
         }
     }
 
-    /// Messages that pass while recording is off.
-    fn pass_by(&mut self, batch: &[Message]) {
-        for message in batch {
-            self.latched.keep(message);
-            self.settled.topic(&message.channel.topic).unrecorded += 1;
+    /// Takes what comes while recording is off.
+    fn let_pass(&mut self, passing: Passing) {
+        for evicted in self.pre_trigger.push(passing) {
+            self.pass_by(evicted);
+        }
+    }
+
+    /// What will not be recorded, but for the state it leaves.
+    fn pass_by(&mut self, passing: Passing) {
+        match passing {
+            Passing::Messages(batch) => {
+                for message in &batch {
+                    self.latched.keep(message);
+                    self.settled.topic(&message.channel.topic).unrecorded += 1;
+                }
+            }
+            Passing::Attachment(attachment) => self.latched.keep_attachment(attachment),
+            Passing::Forgotten(key) => self.latched.forget(&key),
         }
     }
 }

@@ -9,13 +9,18 @@ use ingest::picture_message::NoPicture;
 use ingest::recorded::{RecordedItem, RecordedItems};
 use recording::RecordingError;
 use vision::follow::FollowState;
-use vision::{LandmarkSet, Pinhole, SetVersion, Timestamp};
+use vision::{Landmark, LandmarkSet, Outcome, Pinhole, SetVersion, Timestamp};
 use waymark_proto::convert::FollowSnapshot;
+use waymark_proto::digest::set_digest;
 
 use super::{FrameError, InputError, InputFrame, Live, Past};
 
 /// Full sequence number and set of pictures, by their capture time and their sequence number cut to 32 bits.
-type RegisteredPictures = BTreeMap<(Timestamp, u32), (u64, SetVersion)>;
+type RegisteredPictures = BTreeMap<(Timestamp, u32), (u64, SetKey)>;
+
+/// What tells one set from another: its version, and a digest over those of its landmarks. Between a changed landmark and
+/// the manifest that counts the change, two sets go under one version.
+type SetKey = (SetVersion, [u8; 32]);
 
 /// What a first reading of the recording found out.
 #[derive(Debug, Default)]
@@ -24,8 +29,10 @@ struct Survey {
     pictures: BTreeMap<String, usize>,
     /// What was looked at, for each camera of which results were recorded.
     registered: BTreeMap<Arc<str>, RegisteredPictures>,
-    /// Every set that was in force at some time.
-    sets: BTreeMap<SetVersion, Arc<LandmarkSet>>,
+    /// Whether the recording says what was in force.
+    brings_landmarks: bool,
+    /// Every set that was looked for and whose landmarks are all there.
+    sets: BTreeMap<SetKey, Arc<LandmarkSet>>,
     /// Calibrated cameras, as their first calibration says; a later one counts from where it stands in the file.
     pinholes: BTreeMap<Arc<str>, Pinhole>,
     /// Where each camera stood, by the capture time of the last picture it had looked at.
@@ -71,7 +78,7 @@ impl Replay {
     }
 
     pub(super) fn brings_landmarks(&self) -> bool {
-        !self.survey.sets.is_empty()
+        self.survey.brings_landmarks
     }
 
     fn frame(&mut self, camera: Arc<str>, picture: Result<EncodedFrame, NoPicture>) -> InputFrame {
@@ -98,9 +105,9 @@ impl Replay {
             None => in_force,
             Some(registered) => {
                 let frame = (picture.captured_at, picture.sequence as u32);
-                let Some((whole, version)) = registered.get(&frame) else { return Live::Dropped };
+                let Some((whole, set)) = registered.get(&frame) else { return Live::Dropped };
                 picture.sequence = *whole;
-                self.survey.sets.get(version).cloned().or(in_force)
+                self.survey.sets.get(set).cloned().or(in_force)
             }
         };
         match looked_for {
@@ -155,6 +162,7 @@ impl Iterator for Replay {
                 }
                 Ok(
                     RecordedItem::Registration { .. }
+                    | RecordedItem::Superseded(_)
                     | RecordedItem::State(_)
                     | RecordedItem::Truth { .. }
                     | RecordedItem::Calibration { pinhole: None, .. },
@@ -181,16 +189,19 @@ impl Survey {
 
 fn survey(file: &Path) -> Result<Survey, RecordingError> {
     let mut survey = Survey::default();
+    let mut descriptors = Descriptors::default();
     for item in RecordedItems::open(file)? {
         match item? {
             RecordedItem::Picture { topic, .. } => *survey.pictures.entry(topic).or_default() += 1,
             RecordedItem::Landmarks(set) => {
-                survey.sets.insert(set.version, Arc::new(set));
+                survey.brings_landmarks = true;
+                descriptors.know(set.landmarks);
             }
+            RecordedItem::Superseded(landmarks) => descriptors.know(landmarks.into_iter().map(Arc::new)),
             RecordedItem::Registration { camera, outcome, .. } => {
                 let registered = survey.registered.entry(camera).or_default();
                 let frame = (outcome.captured_at, outcome.sequence as u32);
-                registered.insert(frame, (outcome.sequence, outcome.set_version));
+                registered.insert(frame, (outcome.sequence, descriptors.looked_for(&outcome)));
             }
             RecordedItem::State(snapshot) => {
                 if let Some(last) = snapshot.state.last {
@@ -207,5 +218,38 @@ fn survey(file: &Path) -> Result<Survey, RecordingError> {
             | RecordedItem::Calibration { pinhole: None, .. } => {}
         }
     }
+    survey.sets = descriptors.sets();
     Ok(survey)
+}
+
+/// The landmarks of a recording, and which of them were looked for together.
+#[derive(Debug, Default)]
+struct Descriptors {
+    known: BTreeMap<[u8; 32], Arc<Landmark>>,
+    looked_for: BTreeMap<SetKey, Vec<[u8; 32]>>,
+}
+
+impl Descriptors {
+    fn know(&mut self, landmarks: impl IntoIterator<Item = Arc<Landmark>>) {
+        self.known.extend(landmarks.into_iter().map(|landmark| (landmark.digest.0, landmark)));
+    }
+
+    /// The set of an outcome, which has an entry for each landmark of it, and one more for each further instance.
+    fn looked_for(&mut self, outcome: &Outcome) -> SetKey {
+        let instances = outcome.landmarks.chunk_by(|one, next| one.landmark == next.landmark);
+        let digests = || instances.clone().map(|instances| instances[0].digest);
+        let key = (outcome.set_version, set_digest(digests()).0);
+        self.looked_for.entry(key).or_insert_with(|| digests().map(|digest| digest.0).collect());
+        key
+    }
+
+    fn sets(self) -> BTreeMap<SetKey, Arc<LandmarkSet>> {
+        let Self { known, looked_for } = self;
+        let set = |(key, digests): (SetKey, Vec<[u8; 32]>)| {
+            let landmarks: Option<Vec<_>> = digests.iter().map(|digest| known.get(digest).cloned()).collect();
+            let (version, _) = key;
+            Some((key, Arc::new(LandmarkSet { version, landmarks: landmarks? })))
+        };
+        looked_for.into_iter().filter_map(set).collect()
+    }
 }

@@ -6,7 +6,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bytes::Bytes;
-use recording::{ChannelSpec, Command, Journal, JournalOptions, Latch, LatchKey, Message, Offered, Schema};
+use ingest::recorded::{LANDMARKS_ATTACHMENT, SUPERSEDED_ATTACHMENT};
+use recording::{
+    Attachment, ChannelSpec, Command, Journal, JournalOptions, Latch, LatchKey, Message, Offered, Schema,
+};
 use video::{Decoded, EncoderOptions, Quantizer, StreamDecoder, StreamEncoder};
 use vision::follow::{Follow, FollowOptions, FollowState, FrameStamp};
 use vision::frame::decode::{DecodeLimits, decode};
@@ -19,6 +22,7 @@ use waymark_proto::convert::{follow_state_to_wire, landmark_to_wire, manifest_of
 use waymark_proto::digest::landmark_digest;
 use waymark_proto::foxglove;
 use waymark_proto::images::{PictureFormat, foxglove_time, picture_message};
+use waymark_proto::json::{landmarks_to_json, set_to_json};
 use waymark_proto::payload::WireMessage;
 
 pub(crate) const CAMERA: &str = "front";
@@ -59,6 +63,7 @@ pub(crate) fn set(version: u64, landmarks: Vec<Arc<Landmark>>) -> LandmarkSet {
 struct Drive {
     journal: Journal,
     now_ns: u64,
+    in_force: Vec<Arc<Landmark>>,
 }
 
 impl Drive {
@@ -90,9 +95,17 @@ impl Drive {
         });
     }
 
+    /// Records a set as a follower does.
     fn landmarks(&mut self, set: &LandmarkSet) {
         let SetVersion { epoch, version } = set.version;
         let now = Timestamp::from_nanos(self.now_ns as i64);
+        for old in &self.in_force {
+            if set.landmarks.iter().all(|landmark| landmark.id != old.id) {
+                assert_eq!(self.journal.forget(LatchKey(old.id.clone())), Offered::Accepted);
+            }
+        }
+        let superseded = std::mem::replace(&mut self.in_force, set.landmarks.clone());
+        self.attach(SUPERSEDED_ATTACHMENT, landmarks_to_json(superseded.iter().map(Arc::as_ref)).unwrap());
         for landmark in &set.landmarks {
             let latch = Latch::Repeat(LatchKey(landmark.id.clone()));
             self.record_as("/lead/landmark", version, now, &landmark_to_wire(landmark, epoch), latch);
@@ -100,6 +113,17 @@ impl Drive {
         // The last of a head, as its key sorts behind every landmark's.
         let latch = Latch::Repeat(LatchKey("~manifest".to_owned()));
         self.record_as("/lead/manifest", version, now, &manifest_of(set), latch);
+        self.attach(LANDMARKS_ATTACHMENT, set_to_json(set).unwrap());
+    }
+
+    fn attach(&self, name: &str, text: String) {
+        let attached = self.journal.attach(Attachment {
+            name: name.to_owned(),
+            media_type: "application/json".to_owned(),
+            log_time_ns: self.now_ns,
+            data: text.into(),
+        });
+        assert_eq!(attached, Offered::Accepted);
     }
 }
 
@@ -178,6 +202,15 @@ impl Camera {
     }
 }
 
+/// Another set comes into force.
+pub(crate) struct Change {
+    /// The picture behind which the set is recorded.
+    pub(crate) behind: u64,
+    /// The first picture that it is looked for in.
+    pub(crate) looked_for_from: u64,
+    pub(crate) set: LandmarkSet,
+}
+
 /// Follows every picture but each fourth, which a newer one replaces; changes the set half-way and begins a new file
 /// after each ninth picture. Results are recorded two pictures late, as a busy thread would.
 pub(crate) fn drive(directory: &Path) -> (Vec<PathBuf>, Vec<Outcome>) {
@@ -187,26 +220,40 @@ pub(crate) fn drive(directory: &Path) -> (Vec<PathBuf>, Vec<Outcome>) {
 /// The same drive, in which the recorder may lose one picture that is registered.
 pub(crate) fn drive_sending(
     directory: &Path,
-    mut coding: Coding,
+    coding: Coding,
     lost: Option<u64>,
 ) -> (Vec<PathBuf>, Vec<Outcome>) {
+    let change = Change {
+        behind: FRAMES / 2,
+        looked_for_from: FRAMES / 2 + 3,
+        set: set(2, vec![landmark("dark", 60.0), landmark("red", 195.0)]),
+    };
+    drive_changing(directory, coding, lost, &[change])
+}
+
+/// The same drive with other changes of the set.
+pub(crate) fn drive_changing(
+    directory: &Path,
+    mut coding: Coding,
+    lost: Option<u64>,
+    changes: &[Change],
+) -> (Vec<PathBuf>, Vec<Outcome>) {
     let journal = Journal::start(JournalOptions::new(directory, "v2")).unwrap();
-    let mut drive = Drive { journal, now_ns: 1_700_000_000_000_000_000 };
-    let sets =
-        [set(1, vec![landmark("red", 200.0)]), set(2, vec![landmark("dark", 60.0), landmark("red", 195.0)])];
-    drive.landmarks(&sets[0]);
-    let mut camera =
-        Camera { follow: Follow::new(FollowOptions::default(), sets[0].clone()), late: VecDeque::new() };
+    let mut drive = Drive { journal, now_ns: 1_700_000_000_000_000_000, in_force: Vec::new() };
+    let first = set(1, vec![landmark("red", 200.0)]);
+    drive.landmarks(&first);
+    let mut camera = Camera { follow: Follow::new(FollowOptions::default(), first), late: VecDeque::new() };
     let mut outcomes: Vec<Outcome> = Vec::new();
     for number in 0..FRAMES {
         let captured_at = Timestamp::from_nanos(1_700_000_000_000_000_000 + number as i64 * 33_333_333);
         let stamp = FrameStamp { sequence: FIRST_SEQUENCE + number, captured_at };
         let frame = coding.send(&picture(number), &mut drive, stamp, lost == Some(number));
-        if number == FRAMES / 2 {
-            drive.landmarks(&sets[1]);
-        }
-        if number == FRAMES / 2 + 3 {
-            camera.follow.set_landmarks(sets[1].clone());
+        changes
+            .iter()
+            .filter(|change| change.behind == number)
+            .for_each(|change| drive.landmarks(&change.set));
+        for change in changes.iter().filter(|change| change.looked_for_from == number) {
+            camera.follow.set_landmarks(change.set.clone());
         }
         if number % 4 != 3 {
             outcomes.push(camera.look_at(&frame, stamp));

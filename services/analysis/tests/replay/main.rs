@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::convert::Infallible;
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use analysis::again::{AgainError, AgainWriter};
@@ -19,7 +19,9 @@ use recording::reader::{MessageReader, Strictness};
 use vision::follow::Mode;
 use vision::{LandmarkSet, Outcome};
 
-use crate::drive::{CAMERA, Coding, FIRST_SEQUENCE, drive, drive_sending, landmark, set};
+use crate::drive::{
+    CAMERA, Change, Coding, FIRST_SEQUENCE, drive, drive_changing, drive_sending, landmark, set,
+};
 
 mod drive;
 
@@ -128,6 +130,13 @@ fn each_file_of_a_series_alone_replays_what_was_live_in_every_field() {
     let (files, live) = drive(directory.path());
     assert_eq!(files.len(), 3);
     assert!(live.iter().all(|outcome| outcome.landmarks.iter().any(|landmark| landmark.result.is_ok())));
+    let outcomes = assert_each_alone_replays(&files, live);
+    let versions: BTreeSet<u64> = outcomes.iter().map(|outcome| outcome.set_version.version).collect();
+    assert_eq!(versions, BTreeSet::from([1, 2]));
+}
+
+/// That the files, each by itself, say of their pictures what was said live; returns what they say.
+fn assert_each_alone_replays(files: &[PathBuf], live: Vec<Outcome>) -> Vec<Outcome> {
     let replays = files.iter().map(|file| replayed(file.to_str().unwrap(), None));
     let outcomes: Vec<Outcome> = replays.flat_map(|(_, outcomes)| outcomes).collect();
     // A result that came after its picture's file had ended belongs to no file.
@@ -139,8 +148,36 @@ fn each_file_of_a_series_alone_replays_what_was_live_in_every_field() {
     for (replayed, live) in outcomes.iter().zip(&expected) {
         assert_eq!(replayed, live);
     }
-    let versions: BTreeSet<u64> = outcomes.iter().map(|outcome| outcome.set_version.version).collect();
-    assert_eq!(versions, BTreeSet::from([1, 2]));
+    outcomes
+}
+
+#[test]
+fn a_set_that_changes_where_a_file_ends_is_replayed_on_both_sides() {
+    let other = || set(2, vec![landmark("dark", 60.0), landmark("red", 195.0)]);
+    let retired = || set(3, vec![landmark("dark", 60.0)]);
+    // The second file begins with picture 9, the third with picture 18.
+    for (behind, looked_for_from) in [(8, 9), (8, 10), (7, 8), (8, 14), (9, 10)] {
+        let directory = tempfile::tempdir().unwrap();
+        let changes = [
+            Change { behind, looked_for_from, set: other() },
+            Change { behind: behind + 9, looked_for_from: looked_for_from + 9, set: retired() },
+        ];
+        let (files, live) = drive_changing(directory.path(), Coding::Jpeg, None, &changes);
+        assert_each_alone_replays(&files, live);
+    }
+}
+
+#[test]
+fn two_sets_under_one_version_are_told_apart() {
+    let directory = tempfile::tempdir().unwrap();
+    // A changed landmark arrives before the manifest that counts the change.
+    let changed = |version| set(version, vec![landmark("red", 195.0)]);
+    let changes = [
+        Change { behind: 3, looked_for_from: 4, set: changed(1) },
+        Change { behind: 5, looked_for_from: 6, set: changed(2) },
+    ];
+    let (files, live) = drive_changing(directory.path(), Coding::Jpeg, None, &changes);
+    assert_each_alone_replays(&files, live);
 }
 
 #[test]

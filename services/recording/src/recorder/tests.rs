@@ -5,8 +5,7 @@ use std::{collections::BTreeMap, time::Duration};
 use bytes::Bytes;
 
 use crate::{
-    Attachment, Command, FileName, JournalOptions, LatchKey, Message, PreTrigger, Recorder, Retention,
-    Rotation, State, Storage,
+    Attachment, Command, FileName, JournalOptions, LatchKey, Recorder, Retention, Rotation, State, Storage,
     reader::{MessageReader, Strictness},
     storage::faulty::FaultyDisk,
     testing::{
@@ -71,11 +70,11 @@ fn every_rotated_file_stands_alone_and_no_message_is_lost() {
         log_time_ns: 5,
         data,
     };
-    recorder.attach(&set, at_ms(0));
+    recorder.attach(set.clone(), at_ms(0));
     for n in 0..40 {
         recorder.store(vec![message(&image, n, 20_000)], at_ms(u64::from(n)));
     }
-    recorder.forget(&LatchKey("blue".into()));
+    recorder.forget(LatchKey("blue".into()));
     recorder.command(Command::Split, at_ms(50));
     recorder.finish(at_ms(60));
 
@@ -321,29 +320,6 @@ fn a_restart_never_reuses_a_name() {
         recorder.finish(at_ms(1));
     }
     assert_eq!(names(directory.path()).len(), 3);
-}
-
-#[test]
-fn the_pre_trigger_buffer_goes_first_with_the_state_of_its_time() {
-    let directory = tempfile::tempdir().unwrap();
-    let pre_trigger = Some(PreTrigger { duration: Duration::from_millis(10), max_bytes: 1 << 20 });
-    let mut recorder = recorder(JournalOptions { pre_trigger, ..options(directory.path()) });
-    recorder.command(Command::Stop, at_ms(0));
-    let (log, landmark) = (channel("/log"), channel("/landmark"));
-    let batch = |n: u32| -> Vec<Message> {
-        let state = (n.is_multiple_of(8)).then(|| latched(&landmark, n, "red"));
-        state.into_iter().chain([message(&log, n, 10)]).collect()
-    };
-    (0..30).for_each(|n| recorder.store(batch(n), at_ms(u64::from(n))));
-    recorder.command(Command::Start, at_ms(30));
-    recorder.store(batch(30), at_ms(30));
-    recorder.finish(at_ms(31));
-
-    let read = read_strictly(&directory.path().join(names(directory.path()).pop().unwrap()));
-    assert_eq!(sequences_on(&read, "/log"), (19..31).collect::<Vec<_>>());
-    assert_eq!(sequences_on(&read, "/landmark"), [16, 24], "16 was in force when the buffer begins");
-    let account = recorder.ledger().get("/log").copied().unwrap();
-    assert_eq!((account.stored, account.unrecorded, account.lost()), (12, 19, 0));
 }
 
 #[test]

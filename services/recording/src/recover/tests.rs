@@ -133,7 +133,7 @@ fn metadata_and_attachments_survive() {
         log_time_ns: 1,
         data,
     };
-    recorder.attach(&attachment, at_ms(5));
+    recorder.attach(attachment.clone(), at_ms(5));
     recorder.finish(at_ms(9));
     let whole = directory.path().join(names(directory.path()).pop().unwrap());
     let output = directory.path().join("out.mcap");
