@@ -108,8 +108,8 @@ def test_the_layout_shows_topics_that_recordings_have():
     shown = set(re.findall(r"/follower/[a-z/_]+", json.dumps(layout["configById"])))
     info = json.loads(waymark("recording", "info", "--json", REFERENCE / "rink.mcap"))
     recorded = {topic["topic"] for topic in info["topics"]}
-    # Simulated drives carry no calibration, and new results come only with `register -o`.
-    absent = {topic for topic in shown - recorded if not topic.endswith(("/calibration", "/again"))}
+    # New results come only with `register -o`.
+    absent = {topic for topic in shown - recorded if not topic.endswith("/again")}
     assert not absent
     panels = re.findall(r"[A-Za-z]+![a-z]+", json.dumps(layout["layout"]))
     assert sorted(panels) == sorted(layout["configById"])

@@ -8,8 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use ingest::picture_message::PictureKind;
-use ingest::recorded::{AGAIN, camera_of};
+use ingest::recorded::{AGAIN, camera_of, camera_pictures};
 use recording::recover::RecoverReport;
 use recording::rewrite::Rewrite;
 use recording::walk::RecordedMessage;
@@ -167,7 +166,7 @@ impl AgainWriter {
         }
         let schema = message.channel.schema.as_ref().map_or("", |schema| schema.name.as_str());
         let wanted = self.topic.as_ref().is_none_or(|wanted| wanted == topic);
-        let camera = (wanted && PictureKind::of_schema(schema).is_some()).then(|| camera_of(topic));
+        let camera = (wanted && camera_pictures(topic, schema).is_some()).then(|| camera_of(topic));
         Ok(Some(Copied { message, camera }))
     }
 }

@@ -93,12 +93,15 @@ impl LandmarkLog {
         let replaced = Arc::clone(&self.in_force.borrow());
         let stays = |old: &Arc<Landmark>| set.landmarks.iter().any(|landmark| landmark.digest == old.digest);
         let gone = replaced.landmarks.iter().filter(|landmark| !stays(landmark));
+        let had_some = !self.superseded.is_empty();
         self.superseded.extend(gone.map(|landmark| (now, Arc::clone(landmark))));
         let surplus = self.superseded.len().saturating_sub(MOST_SUPERSEDED);
         self.superseded.drain(..surplus);
         self.superseded.retain(|(since, _)| now.saturating_duration_since(*since) < IN_FLIGHT);
-        let landmarks = self.superseded.iter().map(|(_, landmark)| landmark.as_ref());
-        self.attach(SUPERSEDED_ATTACHMENT, json::landmarks_to_json(landmarks));
+        if had_some || !self.superseded.is_empty() {
+            let landmarks = self.superseded.iter().map(|(_, landmark)| landmark.as_ref());
+            self.attach(SUPERSEDED_ATTACHMENT, json::landmarks_to_json(landmarks));
+        }
     }
 
     fn attach(&self, name: &str, text: Result<String, LandmarkFileError>) {

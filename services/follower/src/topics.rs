@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use bytes::Bytes;
+use ingest::recorded::BURNED_IN;
 use recording::{ChannelSpec, Schema};
 use waymark_proto::keys::{CameraStream, Id, VehicleKeys};
 use waymark_proto::payload::WireMessage;
@@ -76,7 +77,7 @@ impl CameraTopics {
                 String::new(),
             ),
             burned_in: channel::<foxglove::CompressedImage>(
-                format!("/{}/camera/{camera}/burned_in", keys.vehicle()),
+                format!("/{}/camera/{camera}/{BURNED_IN}", keys.vehicle()),
                 String::new(),
             ),
         }

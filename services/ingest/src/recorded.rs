@@ -27,6 +27,9 @@ pub const LANDMARKS_ATTACHMENT: &str = "landmarks.json";
 /// have looked for them in the file's first pictures.
 pub const SUPERSEDED_ATTACHMENT: &str = "landmarks.superseded.json";
 
+/// What stands behind `/{vehicle}/camera/{id}/` in the topic of pictures with what was seen drawn into them.
+pub const BURNED_IN: &str = "burned_in";
+
 /// What stands behind the topics of results that were found later, in the recording, and not by the follower.
 pub const AGAIN: &str = "/again";
 
@@ -156,7 +159,7 @@ impl RecordedItems {
     fn message(&mut self, message: &RecordedMessage) -> Result<Option<RecordedItem>, Damage> {
         let schema = message.channel.schema.as_ref().map_or("", |schema| schema.name.as_str());
         let topic = &message.channel.topic;
-        if let Some(kind) = PictureKind::of_schema(schema) {
+        if let Some(kind) = camera_pictures(topic, schema) {
             let picture = kind.read(message.sequence.into(), &message.data);
             return Ok(Some(RecordedItem::Picture {
                 topic: topic.clone(),
@@ -243,6 +246,14 @@ fn decoded<M: WireMessage>(topic: &str, data: &[u8]) -> Result<M, Damage> {
 pub fn places_in(wire: &v1::Registration) -> Vec<Place> {
     let place = |entry: &v1::LandmarkResult| Place { bearing_rad: entry.bearing_rad, range_m: entry.range_m };
     wire.landmarks.iter().map(place).collect()
+}
+
+/// The kind of the pictures that a camera sent on `topic`; `None` where there are others, as a picture with what was seen
+/// drawn into it on `/{vehicle}/camera/{id}/burned_in`, or none.
+#[must_use]
+pub fn camera_pictures(topic: &str, schema: &str) -> Option<PictureKind> {
+    let drawn_into = matches!(topic.split('/').collect::<Vec<_>>()[..], ["", _, "camera", _, BURNED_IN]);
+    PictureKind::of_schema(schema).filter(|_| !drawn_into)
 }
 
 /// The camera that a topic belongs to: the id in `/{vehicle}/camera/{id}/…`, or a foreign recording's whole topic.

@@ -149,9 +149,10 @@ impl Info {
 }
 
 impl TopicInfo {
-    /// Messages per second between the first and the last.
+    /// Messages per second between the first and the last; `None` where these are less than a second apart, as with the
+    /// landmarks at a file's head.
     pub fn rate_hz(&self) -> Option<f64> {
-        let (first_ns, last_ns) = self.log_span_ns.filter(|(first, last)| first < last)?;
+        let (first_ns, last_ns) = self.log_span_ns.filter(|(first, last)| last - first >= 1_000_000_000)?;
         Some((self.messages - 1) as f64 / ((last_ns - first_ns) as f64 * 1e-9))
     }
 

@@ -74,7 +74,8 @@ fn described(info: &Info) -> String {
             set.landmarks.iter().map(|landmark| format!("{} ({})", landmark.id, landmark.shape.name()));
         let names: Vec<String> = names.collect();
         let version = format!("epoch {}, version {}", set.version.epoch, set.version.version);
-        text.push_str(&format!("  landmarks, {version}: {}\n", names.join(", ")));
+        let listed = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        text.push_str(&format!("  landmarks, {version}: {listed}\n"));
     }
     for (compression, chunks) in &info.chunks {
         let name = if compression.is_empty() { "uncompressed" } else { compression };
