@@ -16,6 +16,9 @@ const SIZE_PX: (u32, u32) = (560, 300);
 /// Points of a series; of a longer one every so many-th is drawn.
 const MOST_POINTS: usize = 1_500;
 
+/// The part of the width and of the height that a legend may cover.
+const LEGEND_PART: (f64, f64) = (0.3, 0.3);
+
 /// More names than these would cover the data; the page tells them instead.
 const MOST_NAMED: usize = 5;
 
@@ -153,13 +156,39 @@ impl Chart {
         let named = self.series.iter().filter(|series| !series.name.is_empty()).count();
         if (1..=MOST_NAMED).contains(&named) {
             axes.configure_series_labels()
-                .position(SeriesLabelPosition::UpperRight)
+                .position(self.emptiest_corner(&x, &y))
                 .background_style(WHITE.mix(0.8))
                 .border_style(GRID)
                 .label_font(("sans-serif", 12).into_font().color(&SOFT))
                 .draw()?;
         }
         Ok(root.present()?)
+    }
+
+    /// Where a legend covers the fewest points; of equals, where one expects it.
+    fn emptiest_corner(&self, x: &Range<f64>, y: &Range<f64>) -> SeriesLabelPosition {
+        // Parts of the axes' lengths from their beginnings, which may be their larger ends.
+        let along = |value: f64, axis: &Range<f64>| (value - axis.start) / (axis.end - axis.start);
+        let places: Vec<(f64, f64)> = self
+            .series
+            .iter()
+            .flat_map(|series| thinned(&series.points))
+            .map(|(at_x, at_y)| (along(at_x, x), along(at_y, y)))
+            .collect();
+        let corners = [
+            (SeriesLabelPosition::UpperRight, (1.0, 1.0)),
+            (SeriesLabelPosition::UpperLeft, (0.0, 1.0)),
+            (SeriesLabelPosition::LowerRight, (1.0, 0.0)),
+            (SeriesLabelPosition::LowerLeft, (0.0, 0.0)),
+        ];
+        let covered = |corner: (f64, f64)| {
+            let within = |place: &&(f64, f64)| {
+                (place.0 - corner.0).abs() <= LEGEND_PART.0 && (place.1 - corner.1).abs() <= LEGEND_PART.1
+            };
+            places.iter().filter(within).count()
+        };
+        let fewest = corners.into_iter().min_by_key(|(_, corner)| covered(*corner));
+        fewest.map_or(SeriesLabelPosition::UpperRight, |(position, _)| position)
     }
 
     fn mesh(&self, axes: &mut Axes<'_, '_>, x: &Range<f64>, y: &Range<f64>) -> Result<(), Box<dyn Error>> {
@@ -255,6 +284,17 @@ mod tests {
     fn long_series_are_thinned() {
         let long: Vec<(f64, f64)> = (0..10_000).map(|at| (f64::from(at), 0.0)).collect();
         assert!(thinned(&long).count() <= MOST_POINTS);
+    }
+
+    #[test]
+    fn the_legend_stands_where_it_covers_the_least() {
+        let corner = |points: &[(f64, f64)]| {
+            let chart = Chart::over_frames("X", vec![Series::new("measured", Mark::Dots, points.to_vec())]);
+            format!("{:?}", chart.emptiest_corner(&(0.0..10.0), &(0.0..10.0)))
+        };
+        assert_eq!(corner(&[]), "UpperRight");
+        assert_eq!(corner(&[(9.0, 9.0), (1.0, 1.0)]), "UpperLeft");
+        assert_eq!(corner(&[(9.0, 9.0), (1.0, 9.0), (1.0, 1.0)]), "LowerRight");
     }
 
     #[test]

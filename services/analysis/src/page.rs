@@ -63,7 +63,7 @@ impl Page {
             |tag: &str, (text, class): (&str, &&str)| format!("<{tag}{class}>{}</{tag}>", escaped(text));
         self.text.push_str("<div class=\"wide\"><table>\n");
         if !caption.is_empty() {
-            self.raw(&format!("<caption>{}</caption>", escaped(caption)));
+            self.raw(&format!("<caption><span>{}</span></caption>", escaped(caption)));
         }
         let names: String = head.iter().copied().zip(&class).map(|named| cell("th", named)).collect();
         self.raw(&format!("<thead><tr>{names}</tr></thead><tbody>"));
