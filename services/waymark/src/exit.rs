@@ -68,7 +68,7 @@ pub(crate) fn code_of(end: Result<Ending, Failure>) -> ExitCode {
 }
 
 /// Whoever read our output has seen enough (`waymark … | head`): not a failure.
-fn is_closed_pipe(error: &anyhow::Error) -> bool {
+pub(crate) fn is_closed_pipe(error: &anyhow::Error) -> bool {
     let kinds = error.chain().filter_map(|cause| cause.downcast_ref::<io::Error>());
     kinds.into_iter().any(|cause| cause.kind() == io::ErrorKind::BrokenPipe)
 }

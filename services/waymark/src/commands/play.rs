@@ -62,12 +62,15 @@ pub(crate) struct Args {
     listen: SocketAddr,
 
     /// Endpoint of the router
-    #[arg(long, value_name = "ENDPOINT", default_value = "tcp/127.0.0.1:7447")]
+    #[arg(long, visible_alias = "router", value_name = "ENDPOINT", default_value = "tcp/127.0.0.1:7447")]
     connect: String,
 }
 
 pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
     let rate = Rate::new(args.rate).or_usage()?;
+    for file in &args.recordings {
+        std::fs::metadata(file).with_context(|| format!("cannot read `{}`", file.display())).or_usage()?;
+    }
     let settings = SessionSettings { connect: vec![args.connect.clone()], ..SessionSettings::default() };
     let options = PlayOptions {
         files: args.recordings.clone(),

@@ -15,7 +15,7 @@ use super::Args;
 use super::differences::Differences;
 use super::per_input::PerInput;
 use crate::console::Console;
-use crate::exit::{Ending, Failure, OrUsage};
+use crate::exit::{Ending, Failure, OrUsage, is_closed_pipe};
 
 /// One frame's result.
 pub(super) struct Seen<'a> {
@@ -49,6 +49,8 @@ enum Table {
     Rows(RowWriter<BufWriter<StdoutLock<'static>>>),
     Differences(Box<Differences>),
     PerInput(PerInput),
+    /// Whoever read the table has seen enough, but the recording is to be written; how that ends.
+    Unread(Ending),
 }
 
 impl Results {
@@ -72,15 +74,12 @@ impl Results {
         if let (Some(again), Some(camera)) = (&mut self.again, seen.camera) {
             again.add(seen.frame, camera, seen.outcome, seen.places)?;
         }
-        match &mut self.table {
-            Table::Rows(writer) => {
-                for row in rows(seen.key(), seen.outcome, seen.places) {
-                    writer.write(&row)?;
-                }
+        match self.table.take(seen) {
+            Err(error) if self.again.is_some() && is_closed_pipe(&error) => {
+                self.table = self.table.unread();
                 Ok(())
             }
-            Table::Differences(differences) => differences.take(seen),
-            Table::PerInput(tables) => tables.take(seen),
+            taken => taken,
         }
     }
 
@@ -99,7 +98,32 @@ impl Results {
             }
             Table::Differences(differences) => differences.finish(console),
             Table::PerInput(tables) => tables.finish().map(|()| Ending::Fine),
+            Table::Unread(ending) => Ok(ending),
         }
+    }
+}
+
+impl Table {
+    fn take(&mut self, seen: &Seen<'_>) -> anyhow::Result<()> {
+        match self {
+            Table::Rows(writer) => {
+                for row in rows(seen.key(), seen.outcome, seen.places) {
+                    writer.write(&row)?;
+                }
+                Ok(())
+            }
+            Table::Differences(differences) => differences.take(seen),
+            Table::PerInput(tables) => tables.take(seen),
+            Table::Unread(_) => Ok(()),
+        }
+    }
+
+    /// What is left of it when nobody reads it any more. Differences are only written where something differs.
+    fn unread(&self) -> Self {
+        Table::Unread(match self {
+            Table::Differences(_) => Ending::Different,
+            _ => Ending::Fine,
+        })
     }
 }
 
