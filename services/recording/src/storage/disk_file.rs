@@ -1,14 +1,20 @@
 //! A file on a real disk, written past the page cache where the file system allows it.
 //!
 //! What is recorded is not read again soon. Written the ordinary way it is copied into the page cache, and each of its
-//! pages is looked for, locked, submitted and released again when the file is synced; all of that is saved.
+//! pages is looked for, locked, submitted and released again when the file is synced; all of that is saved. But each
+//! write waits for the disk, so that what arrives meanwhile is in this process's memory alone; where others keep the
+//! disk busy, chunks go into the page cache instead, which survives the process, and to the disk many at a time.
 
 use std::{
     fs::File,
     io,
     os::unix::fs::{FileExt, OpenOptionsExt},
     path::Path,
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
 };
 
 use rustix::{fs::OFlags, io::Errno};
@@ -19,6 +25,12 @@ use super::RecordingFile;
 /// enough for the disks and file systems of the day, and for the others there is the ordinary way.
 pub(crate) const BLOCK_BYTES: usize = 4096;
 
+/// A write that takes longer than this has met a busy disk; idle ones take a few milliseconds for a chunk.
+const SLOW_WRITE: Duration = Duration::from_millis(25);
+
+/// How long a disk that was busy is given before a write waits for it again.
+const BUSY_FOR: Duration = Duration::from_secs(5);
+
 /// A file being written on a [`super::Disk`].
 #[derive(Debug)]
 pub struct DiskFile {
@@ -27,6 +39,8 @@ pub struct DiskFile {
     direct: Option<File>,
     /// The file system took the flag, but not the writes.
     direct_refused: AtomicBool,
+    /// Until when the disk counts as busy.
+    busy_until: Mutex<Option<Instant>>,
 }
 
 impl DiskFile {
@@ -36,13 +50,20 @@ impl DiskFile {
         ordinary.try_lock().map_err(io::Error::from)?;
         // Refused by file systems in memory, among others.
         let direct = File::options().write(true).custom_flags(OFlags::DIRECT.bits() as i32).open(path).ok();
-        Ok(Self { ordinary, direct, direct_refused: AtomicBool::new(false) })
+        Ok(Self { ordinary, direct, direct_refused: AtomicBool::new(false), busy_until: Mutex::default() })
     }
 
     /// Writes past the page cache; `None` where that cannot be done.
     fn write_direct(&self, blocks: &[u8], offset: u64) -> Option<io::Result<usize>> {
         let direct = self.direct.as_ref().filter(|_| !self.direct_refused.load(Ordering::Relaxed))?;
-        match direct.write_at(blocks, offset) {
+        let mut busy_until = self.busy_until.lock().unwrap_or_else(PoisonError::into_inner);
+        let begun = Instant::now();
+        if busy_until.is_some_and(|until| begun < until) {
+            return None;
+        }
+        let written = direct.write_at(blocks, offset);
+        *busy_until = (begun.elapsed() > SLOW_WRITE).then(|| Instant::now() + BUSY_FOR);
+        match written {
             Err(error) if Errno::from_io_error(&error) == Some(Errno::INVAL) => {
                 self.direct_refused.store(true, Ordering::Relaxed);
                 None

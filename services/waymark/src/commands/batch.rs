@@ -69,6 +69,21 @@ impl Batch {
     }
 }
 
+/// `given` with every glob of recordings in it replaced by those, in the order of their names; globs of pictures stay,
+/// since they are a sequence each.
+pub(crate) fn with_recordings(given: &[String]) -> Result<Vec<String>, Failure> {
+    let mut inputs = Vec::new();
+    for given in given {
+        let is_glob =
+            given.ends_with(".mcap") && given.contains(['*', '?', '[']) && !Path::new(given).exists();
+        match is_glob {
+            true => inputs.extend(matching(given)?.into_iter().map(|file| file.display().to_string())),
+            false => inputs.push(given.clone()),
+        }
+    }
+    Ok(inputs)
+}
+
 fn matching(given: &str) -> Result<Vec<PathBuf>, Failure> {
     let paths = glob::glob(given).with_context(|| format!("`{given}` is not a valid glob")).or_usage()?;
     let files: Vec<PathBuf> = paths.filter_map(Result::ok).filter(|path| path.is_file()).collect();
@@ -140,6 +155,17 @@ mod tests {
     fn outputs_of_recordings_with_one_name_are_told_apart() {
         let files = ["a/x.mcap", "b/x.mcap", "b/y.mcap"].map(PathBuf::from);
         assert_eq!(stems(&files), ["x", "x-2", "y"]);
+    }
+
+    #[test]
+    fn globs_of_recordings_are_those_and_others_stay() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = |name: &str| directory.path().join(name).display().to_string();
+        ["b.mcap", "a.mcap", "c.jpg"].iter().for_each(|name| fs::write(path(name), "").unwrap());
+        let given = [path("*.mcap"), path("*.jpg"), path("b.mcap")];
+        let inputs = with_recordings(&given).unwrap();
+        assert_eq!(inputs, [path("a.mcap"), path("b.mcap"), path("*.jpg"), path("b.mcap")]);
+        assert!(with_recordings(&[path("x*.mcap")]).is_err());
     }
 
     #[test]

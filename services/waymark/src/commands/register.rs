@@ -19,6 +19,7 @@ use analysis::stage_times::StageTimes;
 use anyhow::{Context, anyhow};
 use vision::register::ShapeVeto;
 
+use super::batch::with_recordings;
 use crate::console::Console;
 use crate::exit::{Ending, Failure, OrUsage};
 
@@ -33,7 +34,7 @@ Examples:
   waymark register drive --landmark red.json --landmark blue.json > drive.csv
   waymark register 'left/*.jpg' --landmark stop.json --mode faithful --require-shape --stats cost.json
   waymark register recordings/*.mcap --format ndjson > all.ndjson
-  waymark register recordings/*.mcap --into tables
+  waymark register 'recordings/*.mcap' --into tables
   waymark register drive.mcap --diff
   waymark register drive.mcap --landmark better.json --diff -o drive-again.mcap
 
@@ -57,7 +58,7 @@ in the file have past `missing`: they are listed and counted, but not judged.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Args {
-    /// Directories or quoted globs of pictures (JPEG, PNG), films (FILE.mp4, H.264), or recordings (FILE.mcap; mcap:FILE#TOPIC for one camera)
+    /// Directories or quoted globs of pictures (JPEG, PNG), films (FILE.mp4, H.264), or recordings (FILE.mcap or quoted globs of them; mcap:FILE#TOPIC for one camera)
     #[arg(required = true, value_name = "INPUT")]
     inputs: Vec<String>,
 
@@ -111,14 +112,12 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args, console: Console) -> Result<Ending, Failure> {
     let job = args.job()?;
-    let tables =
-        args.into.as_ref().map(|into| PerInput::begin(into, &args.inputs, args.format)).transpose()?;
-    let due: Vec<String> = match &tables {
-        Some(tables) => args.inputs.iter().filter(|given| tables.is_due(given)).cloned().collect(),
-        None => args.inputs.clone(),
-    };
-    if due.len() < args.inputs.len() {
-        console.note(&format!("{} tables were there already", args.inputs.len() - due.len()));
+    let given = with_recordings(&args.inputs)?;
+    let tables = args.into.as_ref().map(|into| PerInput::begin(into, &given, args.format)).transpose()?;
+    let is_due = |given: &&String| tables.as_ref().is_none_or(|tables| tables.is_due(given));
+    let due: Vec<String> = given.iter().filter(is_due).cloned().collect();
+    if due.len() < given.len() {
+        console.note(&format!("{} tables were there already", given.len() - due.len()));
     }
     let inputs = open_inputs(&due)?;
     if let Some((input, _)) =

@@ -16,7 +16,8 @@ const NAMED_LOSSES: u64 = 20;
 pub(super) struct Tally {
     registered: u64,
     lost: u64,
-    measured: BTreeMap<String, u64>,
+    /// Frames that each landmark was looked for in, and those that it was measured in.
+    landmarks: BTreeMap<String, (u64, u64)>,
 }
 
 impl Tally {
@@ -28,7 +29,9 @@ impl Tally {
             *found.entry(&landmark.landmark).or_default() |= landmark.result.is_ok();
         }
         for (landmark, measured) in found {
-            *self.measured.entry(landmark.to_owned()).or_default() += u64::from(measured);
+            let (looked_for, found) = self.landmarks.entry(landmark.to_owned()).or_default();
+            *looked_for += 1;
+            *found += u64::from(measured);
         }
     }
 
@@ -42,15 +45,14 @@ impl Tally {
 
     /// Says what came of it.
     pub(super) fn ending(&self, console: Console) -> Ending {
-        let frames = self.registered;
-        for (landmark, &measured) in &self.measured {
-            let percent = 100.0 * measured as f64 / frames.max(1) as f64;
+        for (landmark, &(frames, measured)) in &self.landmarks {
+            let percent = 100.0 * measured as f64 / frames as f64;
             console.note(&format!("{landmark}: measured in {measured} of {frames} frames ({percent:.1} %)"));
         }
         if self.lost == 0 {
             return Ending::Fine;
         }
-        let all = frames + self.lost;
+        let all = self.registered + self.lost;
         console.warn(&format!(
             "{} of {all} frames could not be read and are missing from the result",
             self.lost
