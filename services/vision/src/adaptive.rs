@@ -5,6 +5,7 @@
 //! with soft edges ([`soft_edge`]) and scores what came out ([`choose`]). Where to search and what to believe is for
 //! `follow` to say.
 
+mod board;
 mod candidate;
 pub(crate) mod choose;
 mod coarse;
@@ -12,6 +13,7 @@ mod disc;
 mod face;
 pub(crate) mod like;
 pub(crate) mod likeness;
+mod mixture;
 pub(crate) mod noise;
 pub(crate) mod palette;
 pub(crate) mod patch;

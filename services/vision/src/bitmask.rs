@@ -147,6 +147,17 @@ impl BitMask {
         }
     }
 
+    /// Clears the pixels `x_start..x_end` of row `y`.
+    pub(crate) fn clear_run(&mut self, y: u32, x_start: u32, x_end: u32) {
+        let mut x = x_start;
+        while x < x_end {
+            let stop = (x / 64 * 64 + 64).min(x_end);
+            let bits = (u64::MAX >> (64 - (stop - x))) << (x % 64);
+            self.words[y as usize * self.words_per_row + x as usize / 64] &= !bits;
+            x = stop;
+        }
+    }
+
     /// Sets those of the 64 pixels of word `word` (columns from `64 * word`) whose bit is set in `bits`.
     ///
     /// # Panics

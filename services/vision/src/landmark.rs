@@ -76,6 +76,11 @@ impl ShapeClass {
         matches!(self, Self::Octagon | Self::Circle)
     }
 
+    /// Whether objects of this class are upright boxes beside roads, of which several may overlap.
+    pub(crate) const fn is_board(self) -> bool {
+        matches!(self, Self::Rectangle)
+    }
+
     /// The name used on the command line and on pages.
     #[must_use]
     pub const fn name(self) -> &'static str {

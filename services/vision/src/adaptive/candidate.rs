@@ -1,5 +1,6 @@
 //! Objects that may be the landmark, in a part of the frame.
 
+use super::board;
 use super::choose::{self, Form};
 use super::disc;
 use super::face::LETTERING_BRIGHTNESS;
@@ -16,7 +17,7 @@ use crate::geometry::{PointPx, RectPx};
 use crate::landmark::{ColorStats, Landmark, ShapeClass};
 
 /// Fewer like pixels than this are no seed.
-const LEAST_SEED_PX: u64 = 5;
+pub(super) const LEAST_SEED_PX: u64 = 5;
 /// Seeds that fill more of the frame than this are background.
 const LARGEST_SEED: f32 = 0.3;
 /// Parts of a sign that lettering separates lie within this many sizes of its largest part.
@@ -37,8 +38,8 @@ const PALEST: [f32; 3] = [0.3, 0.45, 0.62];
 const DEEP_TINT: f32 = 0.84;
 /// Deeper than any colour: only the sign's own shades count, which tell it from a brick wall behind it.
 const OWN_SHADES: f32 = 2.0;
-/// Where something scores so much, rectangles are not looked for by these, since half a bush behind a post has their form;
-/// nor is a plain landmark looked for within stricter tolerances, which tell it from a surface of nearly its colour.
+/// Where something scores so much, a plain landmark is not looked for within stricter tolerances, which tell it from a
+/// surface of nearly its colour.
 const CLEAR_SCORE: f32 = 0.5;
 
 /// What is searched for and where.
@@ -108,36 +109,52 @@ pub(crate) struct Finder {
 impl Finder {
     /// The objects in the searched region that look like the landmark, best first.
     pub(crate) fn candidates(&mut self, search: &Search<'_>) -> Vec<Candidate> {
-        let Self { marker, like, deep, components } = self;
-        let mut found = Vec::new();
-        if search.likeness.face().is_none() {
-            marker.mark(search.frame, search.region, search.likeness, like);
-            components.find(like);
-            from_seeds(search, components, &mut found);
-            if !is_clear(&found) {
-                let likeness = search.likeness.stricter();
-                marker.refine(search.frame, search.region, &likeness, like, deep);
-                components.find(deep);
-                from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
-            }
+        let mut found = if search.likeness.face().is_none() {
+            self.plain(search)
+        } else if search.landmark.shape.is_board() {
+            self.boards(search)
         } else {
-            let palest = search.likeness.with_palest(PALEST[0]);
-            marker.mark(search.frame, search.region, &palest, like);
-            let deep_tint = search.landmark.shape.is_round().then_some(DEEP_TINT);
-            for palest in PALEST.into_iter().chain(deep_tint).chain([OWN_SHADES]) {
-                if palest == OWN_SHADES && is_clear(&found) && search.landmark.shape == ShapeClass::Rectangle
-                {
-                    break;
-                }
-                let likeness = search.likeness.with_palest(palest);
-                let likeness = if palest == DEEP_TINT { likeness.by_tint_alone() } else { likeness };
-                marker.refine(search.frame, search.region, &likeness, like, deep);
-                components.find(deep);
-                from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
-            }
-        }
+            self.lettered(search)
+        };
         found.sort_by(|a, b| b.score.total_cmp(&a.score));
         without_overlaps(found)
+    }
+
+    fn plain(&mut self, search: &Search<'_>) -> Vec<Candidate> {
+        let Self { marker, like, deep, components } = self;
+        let mut found = Vec::new();
+        marker.mark(search.frame, search.region, search.likeness, like);
+        components.find(like);
+        from_seeds(search, components, &mut found);
+        if !is_clear(&found) {
+            let likeness = search.likeness.stricter();
+            marker.refine(search.frame, search.region, &likeness, like, deep);
+            components.find(deep);
+            from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
+        }
+        found
+    }
+
+    fn boards(&mut self, search: &Search<'_>) -> Vec<Candidate> {
+        let Self { marker, like, deep, components } = self;
+        marker.mark(search.frame, search.region, &search.likeness.with_palest(PALEST[0]), like);
+        board::find(search, like, deep, components)
+    }
+
+    fn lettered(&mut self, search: &Search<'_>) -> Vec<Candidate> {
+        let Self { marker, like, deep, components } = self;
+        let mut found = Vec::new();
+        let palest = search.likeness.with_palest(PALEST[0]);
+        marker.mark(search.frame, search.region, &palest, like);
+        let deep_tint = search.landmark.shape.is_round().then_some(DEEP_TINT);
+        for palest in PALEST.into_iter().chain(deep_tint).chain([OWN_SHADES]) {
+            let likeness = search.likeness.with_palest(palest);
+            let likeness = if palest == DEEP_TINT { likeness.by_tint_alone() } else { likeness };
+            marker.refine(search.frame, search.region, &likeness, like, deep);
+            components.find(deep);
+            from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
+        }
+        found
     }
 }
 

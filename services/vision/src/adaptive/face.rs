@@ -5,6 +5,7 @@
 //! another mean, and its pale pixels, which are mixtures with what stands around it, are no lighter than the others.
 
 use super::likeness::Match;
+use super::mixture::TwoColours;
 use super::palette::dot;
 use crate::landmark::{ColorStats, Landmark};
 
@@ -43,6 +44,7 @@ pub(crate) struct Face {
     lighter: f32,
     /// How much paleness and brightness go together on a clear face, levels².
     lettering: f32,
+    colours: TwoColours,
 }
 
 /// How an object as a whole compares with the face.
@@ -72,7 +74,13 @@ impl Face {
             plainness: brightness(own) / brightness(mean).max(1.0),
             lighter,
             lettering: lettered * (1.0 - lettered) * lighter * purity,
+            colours: TwoColours::of(own, &landmark.shades[far]),
         })
+    }
+
+    /// The sign's colour and its lettering's.
+    pub(crate) fn colours(&self) -> &TwoColours {
+        &self.colours
     }
 
     /// How much lighter than the sign's colour lettering is under the expected light, levels.

@@ -34,6 +34,8 @@ pub(crate) struct Likeness {
     asked: usize,
     /// The face of a lettered sign as a whole, where the descriptor tells it.
     face: Option<Face>,
+    /// How far the gain of the light may lie from the expected one, as a factor.
+    gain_range: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +89,12 @@ impl Likeness {
         let plain =
             landmark.shades.iter().enumerate().filter(|(at, _)| Some(*at) != far).map(|(_, shade)| shade);
         let cones: Vec<Cone> = plain.map(cone).collect();
-        Self { asked: cones.len(), cones, face: far.and_then(|at| Face::of(landmark, at, gain)) }
+        Self {
+            asked: cones.len(),
+            cones,
+            face: far.and_then(|at| Face::of(landmark, at, gain)),
+            gain_range: factor,
+        }
     }
 
     /// The same, but tints paler than `palest` (a part of the pure shade's distance from grey) are not the landmark's.
@@ -181,6 +188,11 @@ impl Likeness {
     /// The face of a lettered sign; `None` of other landmarks.
     pub(crate) fn face(&self) -> Option<&Face> {
         self.face.as_ref()
+    }
+
+    /// Whether next to nothing is known of the light.
+    pub(crate) fn is_light_unknown(&self) -> bool {
+        self.gain_range >= FULL_SEARCH_GAIN
     }
 
     /// The comparison with the nearest shade.

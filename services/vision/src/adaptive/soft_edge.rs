@@ -55,6 +55,42 @@ pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch, edge: Edge) -> Op
     (weight > 0.0).then(|| (PointPx::new(x as f32, y as f32), weight as f32))
 }
 
+/// Centre of gravity and area of a board with a border all around, of which the object is all but the border; `None` of
+/// nothing. Before the sky a border cannot be seen: so the centre is that of what lies within it, and its width that on the
+/// sides where it can be seen.
+pub(crate) fn within_border(
+    frame: &Frame,
+    object: &Patch,
+    (own, border): ([f32; 3], [f32; 3]),
+    width_px: i32,
+) -> Option<(PointPx, f32)> {
+    let inner = object.eroded(1);
+    let outer = object.dilated(width_px);
+    let background = outer.dilated(1).inverted();
+    let pure = Pure { frame, object, inside: &inner, background: &background };
+    let (mut weight, mut mx, mut my) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let mut add = |x: i32, y: i32, share: f64| {
+        weight += share;
+        mx += share * (f64::from(x) + 0.5);
+        my += share * (f64::from(y) + 0.5);
+    };
+    inner.set_places().for_each(|(x, y)| add(x, y, 1.0));
+    let rim = object.dilated(1).without(object);
+    let (mut seen, mut length) = (0.0_f32, 0.0_f32);
+    for (x, y) in outer.without(&inner).set_places() {
+        let (own, border) = pure.shares_with_border((x, y), own, border);
+        add(x, y, f64::from(own));
+        if let Some(border) = border {
+            seen += border;
+            length += if rim.get(x, y) { 1.0 } else { 0.0 };
+        }
+    }
+    let width_px = if length > 0.0 { (seen / length).min(width_px as f32) } else { 0.0 };
+    let (x, y) = (f64::from(object.rect.x) + mx / weight, f64::from(object.rect.y) + my / weight);
+    let area_px2 = weight as f32 + width_px * rim.count() as f32;
+    (weight > 0.0).then(|| (PointPx::new(x as f32, y as f32), area_px2))
+}
+
 /// Where only the object and where only the background shows.
 struct Pure<'a> {
     frame: &'a Frame,
@@ -75,7 +111,25 @@ impl Pure<'_> {
         let plain = share_between(color, own, other).unwrap_or(hard);
         match edge {
             Edge::Plain => plain,
-            Edge::Bordered { color: border, .. } => share_of_two(color, own, border, other).unwrap_or(plain),
+            Edge::Bordered { color: border, .. } => share_of_two(color, own, border, other)
+                .map_or(plain, |(own, border)| (own + border).clamp(0.0, 1.0)),
+        }
+    }
+
+    /// The part of an edge pixel that shows the object, and that which shows its border, where that can be told.
+    fn shares_with_border(&self, (x, y): (i32, i32), own: [f32; 3], border: [f32; 3]) -> (f32, Option<f32>) {
+        let hard = if self.object.get(x, y) { 1.0 } else { 0.0 };
+        let other = local_mean(self.frame, self.background, (x, y));
+        let rect = self.object.rect;
+        let color = levels(self.frame.pixel(rect.x + x as u32, rect.y + y as u32));
+        let Some(other) = other else { return (share_between(color, own, border).unwrap_or(hard), None) };
+        match share_of_two(color, own, border, other) {
+            Some((own, border)) => {
+                let own = own.clamp(0.0, 1.0);
+                (own, Some(border.clamp(0.0, 1.0 - own)))
+            }
+            // The border, if it is one, is of nearly the background's colour.
+            None => (share_between(color, own, border).unwrap_or(hard), None),
         }
     }
 }
@@ -87,9 +141,9 @@ fn share_between(color: [f32; 3], own: [f32; 3], other: [f32; 3]) -> Option<f32>
     (contrast2 >= LEAST_CONTRAST2).then(|| (dot(mixed, contrast) / contrast2).clamp(0.0, 1.0))
 }
 
-/// The part of `own` and `border` together in a mixture of both with `other` (least squares); `None` where the
+/// The parts of `own` and `border` in a mixture of both with `other` (least squares); `None` where the
 /// border looks like the background.
-fn share_of_two(color: [f32; 3], own: [f32; 3], border: [f32; 3], other: [f32; 3]) -> Option<f32> {
+fn share_of_two(color: [f32; 3], own: [f32; 3], border: [f32; 3], other: [f32; 3]) -> Option<(f32, f32)> {
     let (p, a, b) = (minus(color, other), minus(own, other), minus(border, other));
     let (aa, ab, bb) = (dot(a, a), dot(a, b), dot(b, b));
     let determinant = aa * bb - ab * ab;
@@ -98,7 +152,7 @@ fn share_of_two(color: [f32; 3], own: [f32; 3], border: [f32; 3], other: [f32; 3
     }
     let of_own = (dot(p, a) * bb - dot(p, b) * ab) / determinant;
     let of_border = (dot(p, b) * aa - dot(p, a) * ab) / determinant;
-    Some((of_own + of_border).clamp(0.0, 1.0))
+    Some((of_own, of_border))
 }
 
 /// What a neighbour at a distance of (dx, dy) weighs: near ones tell more of the light on the edge than far ones.

@@ -75,6 +75,10 @@ fn welcome(
         if score < least || candidate.area_px2 < least_size * usual.area_px2 {
             continue;
         }
+        // What the picture's border cuts off a sign shows no outline yet, or no more.
+        if candidate.cut && landmark.shape.is_board() && !state.tracks.is_empty() {
+            continue;
+        }
         if state.tracks.len() >= scene.options.max_instances as usize {
             outcomes.push(skipped(landmark, state.next_instance));
             break;

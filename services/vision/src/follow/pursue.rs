@@ -23,10 +23,13 @@ const KNOWN_AFTER: u32 = 3;
 const COVERED_PART: f32 = 0.75;
 /// A part of an object lies within so many of its radii: corners reach further than the disc of the same area.
 const WITHIN: f32 = 1.25;
+/// Less than this part of an object, so near its middle in sides of a square of its area, is a piece of it.
+const PIECE: f32 = 0.35;
+const ON_IT: f32 = 0.72;
 /// Seeds looked at closely in a gate and in the whole frame,
 const SEEDS: (usize, usize) = (4, 12);
-/// and for a round lettered sign, of which lettering leaves several, among red kerbs and cars.
-const ROUND_SIGN_SEEDS: (usize, usize) = (8, 24);
+/// and for a lettered sign, of which lettering leaves several, among red kerbs and cars or green bushes.
+const LETTERED_SIGN_SEEDS: (usize, usize) = (8, 24);
 
 /// Whether more than one object was ever seen that looks like the landmark.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +51,8 @@ pub(super) struct Pursuit {
 }
 
 fn seeds(landmark: &Landmark, likeness: &Likeness) -> (usize, usize) {
-    if landmark.shape.is_round() && likeness.face().is_some() { ROUND_SIGN_SEEDS } else { SEEDS }
+    let several = landmark.shape.is_round() || landmark.shape.is_board();
+    if several && likeness.face().is_some() { LETTERED_SIGN_SEEDS } else { SEEDS }
 }
 
 /// Registers one landmark and updates what is known of it.
@@ -81,6 +85,10 @@ pub(super) fn landmark<P: StageProbe>(
     };
     for found in pursuits.iter().filter_map(|pursuit| pursuit.found.as_ref()) {
         further.retain(|candidate| !found.covers(candidate.centroid) && !candidate.covers(found.centroid));
+    }
+    let seen = pursuits.iter().filter(|pursuit| landmark.shape.is_board() && pursuit.found.is_some());
+    for Pursuit { prediction, .. } in seen {
+        further.retain(|candidate| !lies_on(prediction, candidate));
     }
     let company = if state.next_instance > 1 { Company::Others } else { Company::Alone };
     for (track, pursuit) in state.tracks.iter().zip(&mut pursuits) {
@@ -150,6 +158,12 @@ fn is_within(prediction: &Prediction, candidate: &Candidate) -> bool {
     let radius_px = |area_px2: f32| (area_px2 / std::f32::consts::PI).sqrt();
     let reach_px = prediction.centroid.distance_px(candidate.centroid) + radius_px(candidate.area_px2);
     reach_px <= WITHIN * radius_px(prediction.area_px2) + (xx + yy).sqrt()
+}
+
+/// Whether a candidate is but a piece of the object that is predicted.
+fn lies_on(prediction: &Prediction, candidate: &Candidate) -> bool {
+    candidate.area_px2 < PIECE * prediction.area_px2
+        && prediction.centroid.distance_px(candidate.centroid) < ON_IT * prediction.area_px2.sqrt()
 }
 
 /// How well a candidate continues what was known of the object: its place and its size, 0..1.
