@@ -4,6 +4,7 @@
 //! every window that lies wholly inside, compare ([`reference`](crate::reference)). Masks of several shades are
 //! united.
 
+mod aligned;
 mod cells;
 mod chunk;
 mod exact;

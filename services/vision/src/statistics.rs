@@ -91,6 +91,12 @@ impl Acceptance {
         self.sum.map(|sum| Bounds { low: sum.low.div_ceil(samples) as u8, high: (sum.high / samples) as u8 })
     }
 
+    /// The whole levels that enclose accepted means. A range of means holds an accepted one only where the level that its
+    /// highest reaches is not below these, and the one that its lowest does not exceed is not above.
+    pub(crate) fn levels_around_means(&self, samples: u32) -> [Bounds<u8>; 3] {
+        self.sum.map(|sum| Bounds { low: (sum.low / samples) as u8, high: sum.high.div_ceil(samples) as u8 })
+    }
+
     /// What `expected` ± `tolerance` accepts of windows of `samples` samples; `None` where it accepts nothing at all.
     #[must_use]
     pub fn new(expected: &ColorStats, tolerance: &ColorStats, samples: u32) -> Option<Self> {

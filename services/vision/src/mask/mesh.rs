@@ -24,7 +24,7 @@ use crate::statistics::{Acceptance, Bounds};
 const MOST_HALVINGS: u32 = 3;
 
 /// Cells of a survey are about so many rows of pixels high.
-const CELL_ROWS: u32 = 8;
+pub(super) const CELL_ROWS: u32 = 8;
 
 /// What is looked at, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,8 +88,7 @@ impl Mesh {
     /// Byte averages that may belong to a window that matches, R, G, B; `None` where none can.
     pub(super) fn averages(self, accepted: &Acceptance, samples: u32) -> Option<[Bounds<u8>; 3]> {
         match self.look {
-            // Bounds that no level lies between are reversed, but of extremes one may lie on either side of them.
-            Look::Windows => Some(accepted.means(samples)),
+            Look::Windows => Some(accepted.levels_around_means(samples)),
             Look::Rows | Look::SubBlocks => self.sub_block.averages(accepted, samples),
         }
     }

@@ -39,8 +39,8 @@ impl Ranges {
 
     /// Notes a stretch of a row of cells: the extremes over each block's pixels and the first one after them. (Windows that
     /// start on the second sample of the block's last pixel cover the next one first.) `lowest` and `highest` are extremes
-    /// over the cells' rows from each pixel on, and hold what means something before number `valid`; `floor` and `ceil` make
-    /// levels of them.
+    /// over the cells' rows from each pixel on, and hold what means something before number `valid`; `levels` are made of the
+    /// lowest and the highest.
     #[inline(always)]
     pub(super) fn note<T: Copy + Ord + Default>(
         &mut self,
@@ -49,15 +49,17 @@ impl Ranges {
         valid: usize,
         [lowest, highest]: [&mut [T]; 2],
         memory: &mut [Vec<T>; 2],
-        (floor, ceil): (impl Fn(T) -> u8, impl Fn(T) -> u8),
+        levels: (impl Fn(T) -> u8, impl Fn(T) -> u8),
     ) {
         let cells = row * self.blocks + blocks.start..row * self.blocks + blocks.end;
         repeat_last_pixel(lowest, valid);
         join_blocks(lowest, blocks.len(), memory, T::min);
-        note_blocks(&mut self.low, cells.clone(), &memory[0], lowest, |block, next| floor(block.min(next)));
+        note_blocks(&mut self.low, cells.clone(), &memory[0], lowest, |block, next| {
+            levels.0(block.min(next))
+        });
         repeat_last_pixel(highest, valid);
         join_blocks(highest, blocks.len(), memory, T::max);
-        note_blocks(&mut self.high, cells, &memory[0], highest, |block, next| ceil(block.max(next)));
+        note_blocks(&mut self.high, cells, &memory[0], highest, |block, next| levels.1(block.max(next)));
     }
 
     /// The range of levels in every cell: R, G and B of its lowest, and of its highest.
