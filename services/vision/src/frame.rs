@@ -76,12 +76,6 @@ impl Frame {
         &self.rgb[y as usize * stride..][..stride]
     }
 
-    /// All levels from that pixel on, to the end of the frame.
-    #[inline(always)]
-    pub(crate) fn pixels_from(&self, x: u32, y: u32) -> &[u8] {
-        &self.rgb[3 * (y as usize * self.size.width as usize + x as usize)..]
-    }
-
     /// R, G and B of one pixel.
     ///
     /// # Panics

@@ -6,12 +6,14 @@
 
 mod aligned;
 mod cells;
+mod channel;
 mod chunk;
 mod exact;
 mod index;
 mod lane;
 mod lanes;
 mod lattice;
+mod living;
 mod mesh;
 mod planes;
 mod powers;

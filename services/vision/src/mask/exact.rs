@@ -38,6 +38,26 @@ impl Area {
     }
 }
 
+/// Rows of pixels whose windows are proven to match, or not to, together.
+pub(super) const ROWS_TOGETHER: u32 = 8;
+
+impl Area {
+    /// The area's rows of pixels where windows begin, and into how many bands of [`ROWS_TOGETHER`] they are divided.
+    #[inline(always)]
+    pub(super) fn bands(&self) -> (Range<u32>, u32) {
+        let pixels = DoubledGrid::pixels_of_starts(&self.rows);
+        let bands = (pixels.len() as u32).div_ceil(ROWS_TOGETHER);
+        (pixels, bands)
+    }
+
+    /// The area's rows of the mask that belong to a band.
+    pub(super) fn rows_of_band(&self, band: u32) -> Range<u32> {
+        let first = DoubledGrid::pixels_of_starts(&self.rows).start + ROWS_TOGETHER * band;
+        let (first, after) = (DoubledGrid::starts_on(first), DoubledGrid::starts_on(first + ROWS_TOGETHER));
+        first.start.max(self.rows.start)..after.start.min(self.rows.end)
+    }
+}
+
 /// What to test.
 #[derive(Clone, Copy)]
 pub(super) struct Question<'a> {

@@ -60,15 +60,10 @@ impl Index {
         }
     }
 
-    /// Those that accept some level of all three ranges.
+    /// Those that accept some level between these of a channel.
     #[inline(always)]
-    pub(super) fn touching(&self, low: [u8; 3], high: [u8; 3]) -> Colours {
-        let mut touching = Colours::MAX;
-        for channel in 0..3 {
-            touching &= self.not_too_dark[channel][usize::from(high[channel])];
-            touching &= self.not_too_light[channel][usize::from(low[channel])];
-        }
-        touching
+    pub(super) fn touching(&self, channel: usize, low: u8, high: u8) -> Colours {
+        self.not_too_dark[channel][usize::from(high)] & self.not_too_light[channel][usize::from(low)]
     }
 
     /// Those that accept a colour.
@@ -106,7 +101,8 @@ mod tests {
                 prop_assert_eq!(index.accepting(level) >> at & 1 == 1, accepts);
                 let touches = (0..3)
                     .all(|channel| bounds[channel].low <= high[channel] && bounds[channel].high >= level[channel]);
-                prop_assert_eq!(index.touching(level, high) >> at & 1 == 1, touches);
+                let touching = (0..3).fold(Colours::MAX, |all, channel| all & index.touching(channel, level[channel], high[channel]));
+                prop_assert_eq!(touching >> at & 1 == 1, touches);
             }
         }
     }

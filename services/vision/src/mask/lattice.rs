@@ -10,6 +10,7 @@ use std::ops::Range;
 use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
 
+use super::aligned::Aligned;
 use super::exact::BLOCK_PX;
 use super::index::{Colours, Index};
 use super::mesh::{Lattice, SubBlock};
@@ -31,9 +32,9 @@ pub(super) struct Closer<'a> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Quarters {
     /// Averages of the upper and the lower quarters of sub-blocks, from each pixel on.
-    upper: Vec<u8>,
-    lower: Vec<u8>,
-    memory: Vec<u8>,
+    upper: Aligned<u8>,
+    lower: Aligned<u8>,
+    memory: Aligned<u8>,
     averaged: Averaged,
     /// What the sub-blocks of each cell leave.
     left: Vec<Colours>,
@@ -42,9 +43,9 @@ pub(super) struct Quarters {
 /// Sub-blocks put together from their quarters, from each pixel on.
 #[derive(Clone, Debug, Default)]
 struct Averaged {
-    averages: Vec<u8>,
+    averages: Aligned<u8>,
     /// Not 0 where halves differ too much.
-    unlike: Vec<u8>,
+    unlike: Aligned<u8>,
 }
 
 impl Averaged {
@@ -97,7 +98,7 @@ impl Quarters {
     fn fit(&mut self, blocks_read: usize, cells: usize) {
         let Self { upper, lower, memory, averaged: Averaged { averages, unlike }, left } = self;
         for buffer in [upper, lower, memory, averages, unlike] {
-            buffer.resize(row_bytes(blocks_read), 0);
+            buffer.fit(row_bytes(blocks_read));
         }
         left.clear();
         left.resize(cells, 0);
@@ -128,7 +129,7 @@ impl Quarters {
         let count = averages.len() - ahead;
         let (upper, lower) = (&self.upper[..count + ahead], &self.lower[..count + ahead]);
         let quarters = upper.iter().zip(&upper[ahead..]).zip(lower.iter().zip(&lower[ahead..]));
-        let targets = averages.iter_mut().zip(unlike);
+        let targets = averages.iter_mut().zip(unlike.iter_mut());
         for ((target, unlike), ((&upper_left, &upper_right), (&lower_left, &lower_right))) in
             targets.zip(quarters)
         {

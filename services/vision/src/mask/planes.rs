@@ -1,15 +1,19 @@
 //! Rows of pixels, split into their three channels.
 
+use std::ops::Range;
+
 use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
 
-use super::chunk::fit;
+use super::aligned::Aligned;
+use super::chunk::{add, chunks, chunks_mut, join};
+use super::lane::Lane;
 
 /// Levels of R, G and B of a stretch of those rows of the region that lie under one window.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Planes {
     /// Row after row, each as R, G, B; row r in place r modulo the number of places.
-    levels: Vec<u8>,
+    levels: Aligned<u8>,
     /// The row in each place.
     rows: Vec<Option<u32>>,
     first_column: u32,
@@ -25,7 +29,7 @@ impl Planes {
         self.rows.clear();
         // A power of two: a row's place is found without a division.
         self.rows.resize((rows + 1).next_power_of_two(), None);
-        fit(&mut self.levels, 3 * columns * self.rows.len());
+        self.levels.fit(3 * columns * self.rows.len());
     }
 
     /// Reads row `row` of the region, if it is not there yet. Columns beyond the region repeat the last one; no window
@@ -49,6 +53,34 @@ impl Planes {
         for channel in [red, green, blue] {
             let last = inside.checked_sub(1).map_or(0, |last| channel[last]);
             channel[inside..].fill(last);
+        }
+    }
+
+    /// Makes `sums`, of the rows that begin with row `last`, those of `of` over `rows` of one channel, all of them read; from
+    /// nothing where these do not begin one row below.
+    #[inline(always)]
+    pub(super) fn sum_rows(
+        &self,
+        sums: &mut [i16],
+        last: Option<u32>,
+        rows: Range<u32>,
+        channel: usize,
+        of: impl Fn(u8) -> i16 + Copy,
+    ) {
+        if let Some(left) = last.filter(|last| last + 1 == rows.start) {
+            let (entering, leaving) = (self.channel(rows.end - 1, channel), self.channel(left, channel));
+            let levels = chunks(entering).iter().zip(chunks(leaving));
+            for (sum, (enter, leave)) in chunks_mut(sums).iter_mut().zip(levels) {
+                let change = join(*enter, *leave, |enter, leave| of(enter).minus(of(leave)));
+                *sum = add(*sum, change);
+            }
+            return;
+        }
+        sums.fill(0);
+        for row in rows {
+            for (sum, levels) in chunks_mut(sums).iter_mut().zip(chunks(self.channel(row, channel))) {
+                *sum = join(*sum, *levels, |sum: i16, level| sum.plus(of(level)));
+            }
         }
     }
 

@@ -2,10 +2,14 @@
 
 use std::ops::Range;
 
+use crate::doubled_grid::DoubledGrid;
 use crate::statistics::Bounds;
 
+use super::aligned::Aligned;
 use super::cells::Cells;
 use super::chunk::fit;
+use super::exact::BLOCK_PX;
+use super::mesh::Mesh;
 use super::refute::{Doubt, Side};
 use super::sieve::{BLOCK_BYTES, STEP_BYTES, join_shifted};
 
@@ -21,11 +25,13 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
-    /// Prepares for so many cells.
-    pub(super) fn fit(&mut self, rows: usize, blocks: usize) {
-        (self.rows, self.blocks) = (rows, blocks);
+    /// Prepares for the cells of the grid's region.
+    pub(super) fn fit_to(&mut self, grid: &DoubledGrid, mesh: Mesh) {
+        let region = grid.region();
+        (self.rows, self.blocks) =
+            (mesh.cell_rows(region.height) as usize, region.width.div_ceil(BLOCK_PX) as usize);
         for cells in self.low.iter_mut().chain(&mut self.high) {
-            fit(cells, rows * blocks);
+            fit(cells, self.rows * self.blocks);
         }
     }
 
@@ -37,41 +43,35 @@ impl Ranges {
         self.blocks
     }
 
-    /// Notes a stretch of a row of cells: the extremes over each block's pixels and the first one after them. (Windows that
-    /// start on the second sample of the block's last pixel cover the next one first.) `lowest` and `highest` are extremes
-    /// over the cells' rows from each pixel on, and hold what means something before number `valid`; `levels` are made of the
-    /// lowest and the highest.
+    /// Notes a row of cells: the extremes over each block's pixels and the first one after them. (Windows that start on the
+    /// second sample of the block's last pixel cover the next one first.) `lowest` and `highest` are extremes over the cells'
+    /// rows from each pixel on, and hold what means something before number `valid`.
     #[inline(always)]
-    pub(super) fn note<T: Copy + Ord + Default>(
+    pub(super) fn note(
         &mut self,
         row: usize,
-        blocks: Range<usize>,
         valid: usize,
-        [lowest, highest]: [&mut [T]; 2],
-        memory: &mut [Vec<T>; 2],
-        levels: (impl Fn(T) -> u8, impl Fn(T) -> u8),
+        [lowest, highest]: [&mut [u8]; 2],
+        memory: &mut [Aligned<u8>; 2],
     ) {
-        let cells = row * self.blocks + blocks.start..row * self.blocks + blocks.end;
-        repeat_last_pixel(lowest, valid);
-        join_blocks(lowest, blocks.len(), memory, T::min);
-        note_blocks(&mut self.low, cells.clone(), &memory[0], lowest, |block, next| {
-            levels.0(block.min(next))
-        });
-        repeat_last_pixel(highest, valid);
-        join_blocks(highest, blocks.len(), memory, T::max);
-        note_blocks(&mut self.high, cells, &memory[0], highest, |block, next| levels.1(block.max(next)));
+        let cells = row * self.blocks..(row + 1) * self.blocks;
+        for extremes in [&mut *lowest, &mut *highest] {
+            repeat_last_pixel(&mut extremes[..BLOCK_BYTES * cells.len() + 3], valid);
+        }
+        note_extremes(&mut self.low, cells.clone(), lowest, memory, u8::min);
+        note_extremes(&mut self.high, cells, highest, memory, u8::max);
     }
 
-    /// The range of levels in every cell: R, G and B of its lowest, and of its highest.
+    /// The lowest and the highest levels of a channel in these cells.
     #[inline(always)]
-    pub(super) fn cells(&self) -> impl Iterator<Item = ([u8; 3], [u8; 3])> {
-        let cells = self.rows * self.blocks;
-        let [low_red, low_green, low_blue] = &self.low;
-        let [high_red, high_green, high_blue] = &self.high;
-        let low = low_red[..cells].iter().zip(low_green).zip(low_blue);
-        let high = high_red[..cells].iter().zip(high_green).zip(high_blue);
-        let cells = low.zip(high);
-        cells.map(|(((&r, &g), &b), ((&high_r, &high_g), &high_b))| ([r, g, b], [high_r, high_g, high_b]))
+    pub(super) fn channel(&self, channel: usize, cells: Range<usize>) -> [&[u8]; 2] {
+        [&self.low[channel][cells.clone()], &self.high[channel][cells]]
+    }
+
+    /// As [`channel`](Self::channel), to be set.
+    #[inline(always)]
+    pub(super) fn channel_mut(&mut self, channel: usize, cells: Range<usize>) -> [&mut [u8]; 2] {
+        [&mut self.low[channel][cells.clone()], &mut self.high[channel][cells]]
     }
 
     /// Sets the cells where a window may match one of the shades.
@@ -141,16 +141,36 @@ fn repeat_last_pixel<T: Copy>(row: &mut [T], end: usize) {
 /// Numbers of a quarter of a block.
 const QUARTER: usize = BLOCK_BYTES / 4;
 
+/// Notes what `with` makes of every block and the pixel after it.
+#[inline(always)]
+fn note_extremes(
+    levels: &mut [Vec<u8>; 3],
+    cells: Range<usize>,
+    row: &[u8],
+    memory: &mut [Aligned<u8>; 2],
+    with: impl Fn(u8, u8) -> u8,
+) {
+    join_blocks(row, cells.len(), memory, &with);
+    let [red, green, blue] = levels.each_mut().map(|levels| levels[cells.clone()].iter_mut());
+    let blocks = memory[0].as_chunks::<QUARTER>().0.iter().zip(row[BLOCK_BYTES..].chunks(BLOCK_BYTES));
+    for (((red, green), blue), (block, next)) in red.zip(green).zip(blue).zip(blocks) {
+        let [first, second, third, ..] = next else { return };
+        *red = with(block[0], *first);
+        *green = with(block[1], *second);
+        *blue = with(block[2], *third);
+    }
+}
+
 /// Makes `memory[0]` what `with` makes of each channel in every block: in the first three of [`QUARTER`] numbers.
 #[inline(always)]
-fn join_blocks<T: Copy + Default>(
-    row: &[T],
+fn join_blocks(
+    row: &[u8],
     blocks: usize,
-    [joined, memory]: &mut [Vec<T>; 2],
-    with: impl Fn(T, T) -> T,
+    [joined, memory]: &mut [Aligned<u8>; 2],
+    with: impl Fn(u8, u8) -> u8,
 ) {
     for buffer in [&mut *joined, &mut *memory] {
-        buffer.resize((QUARTER * blocks).next_multiple_of(STEP_BYTES) + STEP_BYTES, T::default());
+        buffer.fit((QUARTER * blocks).next_multiple_of(STEP_BYTES) + STEP_BYTES);
     }
     for (quarter, block) in joined.as_chunks_mut::<QUARTER>().0.iter_mut().zip(&row.as_chunks().0[..blocks]) {
         *quarter = join_quarters(block, &with);
@@ -162,8 +182,8 @@ fn join_blocks<T: Copy + Default>(
 }
 
 #[inline(always)]
-fn join_quarters<T: Copy + Default>(block: &[T; BLOCK_BYTES], with: impl Fn(T, T) -> T) -> [T; QUARTER] {
-    let (mut halves, mut quarter) = ([T::default(); 2 * QUARTER], [T::default(); QUARTER]);
+fn join_quarters(block: &[u8; BLOCK_BYTES], with: impl Fn(u8, u8) -> u8) -> [u8; QUARTER] {
+    let (mut halves, mut quarter) = ([0; 2 * QUARTER], [0; QUARTER]);
     for at in 0..2 * QUARTER {
         halves[at] = with(block[at], block[at + 2 * QUARTER]);
     }
@@ -171,22 +191,4 @@ fn join_quarters<T: Copy + Default>(block: &[T; BLOCK_BYTES], with: impl Fn(T, T
         quarter[at] = with(halves[at], halves[at + QUARTER]);
     }
     quarter
-}
-
-/// Notes the level of every block, by what was made of it and the pixel after it in `row`.
-#[inline(always)]
-fn note_blocks<T: Copy>(
-    levels: &mut [Vec<u8>; 3],
-    cells: Range<usize>,
-    joined: &[T],
-    row: &[T],
-    level: impl Fn(T, T) -> u8,
-) {
-    for (channel, levels) in levels.iter_mut().enumerate() {
-        let blocks = joined[channel..].iter().step_by(QUARTER);
-        let next = row[BLOCK_BYTES + channel..].iter().step_by(BLOCK_BYTES);
-        for ((cell, &block), &next) in levels[cells.clone()].iter_mut().zip(blocks).zip(next) {
-            *cell = level(block, next);
-        }
-    }
 }

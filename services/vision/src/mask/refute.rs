@@ -8,16 +8,13 @@
 use crate::doubled_grid::DoubledGrid;
 use crate::statistics::Acceptance;
 
+use super::aligned::Aligned;
 use super::cells::Cells;
 use super::chunk::{WIDTH, chunks, chunks_mut, join};
-use super::exact::{Area, BLOCK_PX, Question};
-use super::lane::Lane;
+use super::exact::{Area, BLOCK_PX, Question, ROWS_TOGETHER};
 use super::lanes::Work;
 use super::planes::Planes;
 use super::powers::{Powers, columns_under};
-
-/// Rows of pixels that are refuted or left together.
-const ROWS_TOGETHER: u32 = 8;
 
 /// The level that counts as 0.
 const MIDDLE: i16 = 128;
@@ -96,8 +93,10 @@ pub(super) struct Refuter {
     planes: Planes,
     /// Of the columns' sums over the rows under the windows.
     powers: Powers<i16>,
+    /// The row of pixels on which the windows begin that the columns' sums are of.
+    row: Option<u32>,
     /// The largest S of each column over the rows so far.
-    largest: Vec<i16>,
+    largest: Aligned<i16>,
     left: Cells,
 }
 
@@ -114,14 +113,13 @@ impl Work for Refute<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { question, refutation, area, refuter, rest } = self;
-        let rows = DoubledGrid::pixels_of_starts(&area.rows);
-        let bands = (rows.len() as u32).div_ceil(ROWS_TOGETHER);
+        let (rows, bands) = area.bands();
         refuter.fit(&question, &area, bands);
         let high = DoubledGrid::aligned_pixels(question.grid.window().height);
         let last = rows.end.min(question.grid.region().height - high);
         // A window that starts on the second sample of a row is the mean of this row's and the next one's.
         for row in rows.start..=last {
-            refuter.sum_rows(&question, refutation, row, row == rows.start);
+            refuter.sum_rows(&question, refutation, row);
             let (ahead, band) = (row - rows.start, (row - rows.start) / ROWS_TOGETHER);
             let first = ahead.is_multiple_of(ROWS_TOGETHER);
             if first && band > 0 {
@@ -136,13 +134,7 @@ impl Work for Refute<'_> {
                 refuter.note(refutation, band);
             }
         }
-        let mask_rows = |band: u32| {
-            let first = rows.start + ROWS_TOGETHER * band;
-            let (first, after) =
-                (DoubledGrid::starts_on(first), DoubledGrid::starts_on(first + ROWS_TOGETHER));
-            first.start.max(area.rows.start)..after.start.min(area.rows.end)
-        };
-        refuter.left.take_areas(mask_rows, area.blocks.start, rest);
+        refuter.left.take_areas(|band| area.rows_of_band(band), area.blocks.start, rest);
     }
 }
 
@@ -154,37 +146,24 @@ impl Refuter {
         let positions = WIDTH * area.blocks.len() + 1;
         self.powers.fit(columns_under(positions, window.width), window.width);
         let columns = self.powers.columns().len();
-        self.largest.resize(columns, i16::MIN);
+        self.largest.fit(columns);
         let rows = DoubledGrid::aligned_pixels(window.height);
         self.planes.fit(BLOCK_PX * area.blocks.start, columns, rows as usize);
         self.left.reset(bands as usize, area.blocks.len());
+        self.row = None;
     }
 
     /// Brings the columns' sums to the windows that start on row `row` of pixels.
     #[inline(always)]
-    fn sum_rows(&mut self, question: &Question<'_>, refutation: Refutation, row: u32, begin: bool) {
-        let high = DoubledGrid::aligned_pixels(question.grid.window().height);
+    fn sum_rows(&mut self, question: &Question<'_>, refutation: Refutation, row: u32) {
+        let rows = row..row + DoubledGrid::aligned_pixels(question.grid.window().height);
+        for row in rows.clone() {
+            self.planes.read(question.frame, question.grid, row);
+        }
         let columns = self.powers.columns();
         let of = |level| refutation.level(level);
-        if begin {
-            columns.fill(0);
-            for row in row..row + high {
-                self.planes.read(question.frame, question.grid, row);
-                let entering = chunks(self.planes.channel(row, refutation.channel));
-                for (sum, enter) in chunks_mut(columns).iter_mut().zip(entering) {
-                    *sum = join(*sum, *enter, |sum, enter| sum.plus(of(enter)));
-                }
-            }
-        } else {
-            self.planes.read(question.frame, question.grid, row + high - 1);
-            let entering = self.planes.channel(row + high - 1, refutation.channel);
-            let leaving = self.planes.channel(row - 1, refutation.channel);
-            let levels = chunks(entering).iter().zip(chunks(leaving));
-            for (sum, (enter, leave)) in chunks_mut(columns).iter_mut().zip(levels) {
-                let change = join(*enter, *leave, |enter, leave| of(enter).minus(of(leave)));
-                *sum = join(*sum, change, i16::plus);
-            }
-        }
+        self.planes.sum_rows(columns, self.row, rows, refutation.channel, of);
+        self.row = Some(row);
         self.powers.build();
     }
 

@@ -11,17 +11,23 @@ use super::cells::Cells;
 use super::index::{Colours, Index, MOST_COLOURS};
 use super::lanes::Work;
 use super::lattice::{Closer, Quarters};
+use super::living::Living;
 use super::mesh::{Lattice, Mesh};
 use super::ranges::Ranges;
-use super::survey::{Survey, Take};
+use super::sub_blocks::SubBlocks;
+use super::sums::Sums;
 
 /// What was seen for the landmarks of one grid, and the memory to see it with.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shared {
     of: Option<(DoubledGrid, Mesh)>,
-    survey: Survey,
+    ranges: Ranges,
+    sub_blocks: SubBlocks,
+    sums: Sums,
     quarters: Quarters,
     groups: Vec<Group>,
+    /// For each group, what the survey leaves of its colours.
+    living: Vec<Living>,
     /// Groups in use.
     used: usize,
 }
@@ -30,14 +36,10 @@ pub(super) struct Shared {
 #[derive(Clone, Debug, Default)]
 struct Group {
     colours: u32,
-    /// By averages of the survey's sub-blocks.
-    of_survey: Index,
     /// By averages of the lattice's.
     of_lattice: Index,
     /// The most that one of them allows between the halves of the lattice's sub-blocks.
     most_between_halves: u8,
-    /// Those that may match in each cell.
-    living: Vec<Colours>,
     /// Those that may match anywhere.
     anywhere: Colours,
 }
@@ -73,12 +75,15 @@ impl Shared {
         if self.groups[..self.used].last().is_none_or(full) {
             if self.used == self.groups.len() {
                 self.groups.push(Group::default());
+                self.living.push(Living::default());
             }
             self.groups[self.used].clear();
+            self.living[self.used].index.clear();
             self.used += 1;
         }
         let group = self.used - 1;
-        let add = |accepted| self.groups[group].add(accepted, &grid, mesh);
+        let Self { groups, living, .. } = self;
+        let add = |accepted| groups[group].add(accepted, &grid, mesh, &mut living[group].index);
         Some(Place { group, colours: accepted.iter().map(add).fold(0, |all, one| all | one) })
     }
 
@@ -89,15 +94,14 @@ impl Shared {
 
     /// Sets the cells where a landmark may match.
     pub(super) fn tell(&self, place: Place, cells: &mut Cells) {
-        let ranges = self.survey.ranges();
-        cells.reset(ranges.rows(), ranges.blocks());
-        for (flag, living) in cells.flags().iter_mut().zip(&self.groups[place.group].living) {
+        cells.reset(self.ranges.rows(), self.ranges.blocks());
+        for (flag, living) in cells.flags().iter_mut().zip(self.living[place.group].cells()) {
             *flag = u8::from(living & place.colours != 0);
         }
     }
 
     pub(super) fn ranges(&self) -> &Ranges {
-        self.survey.ranges()
+        &self.ranges
     }
 }
 
@@ -105,17 +109,22 @@ impl Group {
     fn clear(&mut self) {
         self.colours = 0;
         self.most_between_halves = 0;
-        self.of_survey.clear();
         self.of_lattice.clear();
     }
 
     /// Adds a shade; what its sub-blocks may look like nowhere, it accepts nowhere.
-    fn add(&mut self, accepted: &Acceptance, grid: &DoubledGrid, mesh: Mesh) -> Colours {
+    fn add(
+        &mut self,
+        accepted: &Acceptance,
+        grid: &DoubledGrid,
+        mesh: Mesh,
+        of_survey: &mut Index,
+    ) -> Colours {
         let colour = 1 << self.colours;
         self.colours += 1;
         let samples = grid.samples();
         if let Some(averages) = mesh.averages(accepted, samples) {
-            self.of_survey.add(colour, &averages);
+            of_survey.add(colour, &averages);
         }
         if let Some(sub_block) = Lattice::of(grid.window()).map(Lattice::sub_block) {
             let most = sub_block.most_between_halves(accepted, samples);
@@ -127,33 +136,28 @@ impl Group {
         colour
     }
 
-    /// Sets the colours that may match in each cell.
+    /// Looks closer at the cells where several colours live, of so many blocks a row.
     #[inline(always)]
     fn sort(
         &mut self,
         frame: &Frame,
         grid: &DoubledGrid,
         mesh: Mesh,
-        ranges: &Ranges,
+        blocks: usize,
+        cells: &mut [Colours],
         quarters: &mut Quarters,
     ) {
-        self.of_survey.finish();
         self.of_lattice.finish();
-        let blocks = ranges.blocks();
-        self.living.resize(ranges.rows() * blocks, 0);
-        for (living, (low, high)) in self.living.iter_mut().zip(ranges.cells()) {
-            *living = self.of_survey.touching(low, high);
-        }
         if let Some(lattice) = Lattice::of(grid.window()) {
             let (index, most_between_halves) = (&self.of_lattice, self.most_between_halves);
             let closer = Closer { frame, grid, lattice, index, most_between_halves };
-            for (row, living) in self.living.chunks_mut(blocks).enumerate() {
+            for (row, living) in cells.chunks_mut(blocks).enumerate() {
                 look_closer(closer, mesh.start_pixels(row as u32), living, quarters);
             }
         }
         self.anywhere = 0;
-        for living in &self.living {
-            self.anywhere |= living;
+        for living in cells {
+            self.anywhere |= *living;
         }
     }
 }
@@ -185,11 +189,27 @@ pub(super) struct See<'a> {
 impl Work for See<'_> {
     #[inline(always)]
     fn run(self) {
-        let Self { shared: Shared { of, survey, quarters, groups, used }, frame } = self;
+        let Self { shared: Shared { of, ranges, sub_blocks, sums, quarters, groups, living, used }, frame } =
+            self;
         let Some((grid, mesh)) = of else { return };
-        Take { survey: &mut *survey, frame, grid, mesh: *mesh }.run();
-        for group in &mut groups[..*used] {
-            group.sort(frame, grid, *mesh, survey.ranges(), quarters);
+        let (mesh, groups, living) = (*mesh, &mut groups[..*used], &mut living[..*used]);
+        ranges.fit_to(grid, mesh);
+        let cells = ranges.rows() * ranges.blocks();
+        for living in &mut *living {
+            living.begin(cells);
+        }
+        if mesh.is_of_windows() {
+            sums.take(frame, grid, mesh, ranges, living);
+        } else {
+            sub_blocks.take(frame, grid, mesh, ranges);
+            for living in &mut *living {
+                for channel in 0..3 {
+                    living.narrow(channel, 0..cells, ranges);
+                }
+            }
+        }
+        for (group, living) in groups.iter_mut().zip(living) {
+            group.sort(frame, grid, mesh, ranges.blocks(), living.cells_mut(), quarters);
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
 use crate::statistics::Bounds;
 
+use super::aligned::Aligned;
 use super::cells::Cells;
 use super::exact::BLOCK_PX;
 use super::lanes::Work;
@@ -47,9 +48,9 @@ const PIXEL_STARTS: [u8; BLOCK_BYTES] = {
 /// Memory of the sieve.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sieve {
-    averages: Vec<u8>,
-    next_averages: Vec<u8>,
-    inside: Vec<u8>,
+    averages: Aligned<u8>,
+    next_averages: Aligned<u8>,
+    inside: Aligned<u8>,
 }
 
 /// A look at one row of each band: sets the cells where a window may match one of the shades.
@@ -76,7 +77,7 @@ impl Sieve {
         let bands = mesh.bands(region.height);
         let blocks = region.width.div_ceil(BLOCK_PX) as usize;
         for buffer in [&mut self.averages, &mut self.next_averages, &mut self.inside] {
-            buffer.resize(row_bytes(blocks), 0);
+            buffer.fit(row_bytes(blocks));
         }
         cells.reset(bands as usize, blocks);
         for band in 0..bands {
@@ -112,7 +113,7 @@ pub(super) fn row_bytes(blocks: usize) -> usize {
 
 /// Makes of each byte the rounded average of the 2^`halvings` pixels from there on.
 #[inline(always)]
-pub(super) fn average_runs(averages: &mut Vec<u8>, memory: &mut Vec<u8>, halvings: u32) {
+pub(super) fn average_runs(averages: &mut Aligned<u8>, memory: &mut Aligned<u8>, halvings: u32) {
     for halving in 0..halvings {
         join_shifted(averages, 3 << halving, memory, average);
         std::mem::swap(averages, memory);

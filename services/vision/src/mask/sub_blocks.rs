@@ -3,6 +3,7 @@
 use crate::doubled_grid::DoubledGrid;
 use crate::frame::Frame;
 
+use super::aligned::Aligned;
 use super::mesh::{Mesh, SubBlock};
 use super::ranges::Ranges;
 use super::sieve::{average, average_runs, row_bytes};
@@ -11,13 +12,13 @@ use super::sieve::{average, average_runs, row_bytes};
 #[derive(Clone, Debug, Default)]
 pub(super) struct SubBlocks {
     /// Those of the present band.
-    averages: Vec<u8>,
-    memory: Vec<u8>,
+    averages: Aligned<u8>,
+    memory: Aligned<u8>,
     /// Their extremes over the bands of the present row of cells.
-    lowest: Vec<u8>,
-    highest: Vec<u8>,
+    lowest: Aligned<u8>,
+    highest: Aligned<u8>,
     /// Memory to join them.
-    joined: [Vec<u8>; 2],
+    joined: [Aligned<u8>; 2],
 }
 
 impl SubBlocks {
@@ -25,7 +26,7 @@ impl SubBlocks {
     #[inline(always)]
     pub(super) fn take(&mut self, frame: &Frame, grid: &DoubledGrid, mesh: Mesh, ranges: &mut Ranges) {
         for buffer in [&mut self.averages, &mut self.memory, &mut self.lowest, &mut self.highest] {
-            buffer.resize(row_bytes(ranges.blocks()), 0);
+            buffer.fit(row_bytes(ranges.blocks()));
         }
         // Sub-blocks that stick out of the region mean nothing; no window of the region begins there.
         let valid = 3 * (grid.region().width + 1 - mesh.sub_block().width_px) as usize;
@@ -44,8 +45,7 @@ impl SubBlocks {
                     self.widen();
                 }
             }
-            let (extremes, level) = ([&mut self.lowest[..], &mut self.highest[..]], |level: u8| level);
-            ranges.note(row, 0..ranges.blocks(), valid, extremes, &mut self.joined, (level, level));
+            ranges.note(row, valid, [&mut self.lowest, &mut self.highest], &mut self.joined);
         }
     }
 
@@ -64,7 +64,9 @@ impl SubBlocks {
     /// Extends the extremes to the present band.
     #[inline(always)]
     fn widen(&mut self) {
-        for ((low, high), &average) in self.lowest.iter_mut().zip(&mut self.highest).zip(&self.averages) {
+        for ((low, high), &average) in
+            self.lowest.iter_mut().zip(self.highest.iter_mut()).zip(self.averages.iter())
+        {
             *low = average.min(*low);
             *high = average.max(*high);
         }

@@ -9,16 +9,14 @@ use crate::bitmask::BitMask;
 use crate::doubled_grid::DoubledGrid;
 use crate::statistics::Acceptance;
 
+use super::aligned::Aligned;
 use super::cells::Cells;
-use super::chunk::{self, WIDTH, chunks, chunks_mut, fit, join};
-use super::exact::{Area, BLOCK_PX, Question, set};
+use super::chunk::{self, WIDTH, chunks, chunks_mut, join};
+use super::exact::{Area, BLOCK_PX, Question, ROWS_TOGETHER, set};
 use super::lane::Lane;
 use super::lanes::Work;
 use super::planes::Planes;
 use super::powers::{Powers, columns_under};
-
-/// Rows of pixels that are tested together where one of them is not proven: each beginning costs some rows.
-const ROWS_TOGETHER: u32 = 8;
 
 /// The middle level c and the largest Q that proves a match, for each channel; Q in units of 2^`shift`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +77,7 @@ fn pixels_high(grid: &DoubledGrid) -> u32 {
 pub(super) struct Sure {
     planes: Planes,
     /// Q of the columns over the rows under the windows.
-    columns: [Vec<i16>; 3],
+    columns: [Aligned<i16>; 3],
     powers: Powers<i16>,
     /// For each block, a bit for each pixel whose windows are proven to match.
     proven: Vec<u32>,
@@ -103,8 +101,8 @@ impl Work for Prove<'_> {
     fn run(self) {
         let Self { question, proof, area, sure, mask, rest } = self;
         sure.fit(&question, &area);
-        let pixels = DoubledGrid::pixels_of_starts(&area.rows);
-        sure.unproven.reset((pixels.len() as u32).div_ceil(ROWS_TOGETHER) as usize, area.blocks.len());
+        let (pixels, bands) = area.bands();
+        sure.unproven.reset(bands as usize, area.blocks.len());
         for row in pixels.clone() {
             let starts = DoubledGrid::starts_on(row);
             let inside = area.rows.start <= starts.start && starts.end <= area.rows.end;
@@ -117,13 +115,7 @@ impl Work for Prove<'_> {
             }
             sure.note(&area, row, (row - pixels.start) / ROWS_TOGETHER, mask);
         }
-        let mask_rows = |band: u32| {
-            let first = pixels.start + ROWS_TOGETHER * band;
-            let (first, after) =
-                (DoubledGrid::starts_on(first), DoubledGrid::starts_on(first + ROWS_TOGETHER));
-            first.start.max(area.rows.start)..after.start.min(area.rows.end)
-        };
-        sure.unproven.take_areas(mask_rows, area.blocks.start, rest);
+        sure.unproven.take_areas(|band| area.rows_of_band(band), area.blocks.start, rest);
     }
 }
 
@@ -135,7 +127,7 @@ impl Sure {
         self.powers.fit(columns_under(positions, side), side);
         let columns = self.powers.columns().len();
         for sums in &mut self.columns {
-            fit(sums, columns);
+            sums.fit(columns);
         }
         self.planes.fit(BLOCK_PX * area.blocks.start, columns, pixels_high(question.grid) as usize);
         self.row = None;
@@ -144,31 +136,13 @@ impl Sure {
     /// Brings the columns' sums to the windows that begin on row `row` of pixels.
     #[inline(always)]
     fn sum_rows(&mut self, question: &Question<'_>, proof: Proof, row: u32) {
-        let last = row + pixels_high(question.grid) - 1;
-        let columns = self.powers.columns().len();
-        if row > 0 && self.row == Some(row - 1) {
-            self.planes.read(question.frame, question.grid, last);
-            for (channel, sums) in self.columns.iter_mut().enumerate() {
-                let of = proof.square(channel);
-                let (enter, leave) =
-                    (self.planes.channel(last, channel), self.planes.channel(row - 1, channel));
-                let levels = chunks(enter).iter().zip(chunks(leave));
-                for (sum, (enter, leave)) in chunks_mut(&mut sums[..columns]).iter_mut().zip(levels) {
-                    let change = join(*enter, *leave, |enter, leave| of(enter).minus(of(leave)));
-                    *sum = chunk::add(*sum, change);
-                }
-            }
-        } else {
-            (row..=last).for_each(|row| self.planes.read(question.frame, question.grid, row));
-            for (channel, sums) in self.columns.iter_mut().enumerate() {
-                let of = proof.square(channel);
-                sums[..columns].fill(0);
-                for plane in (row..=last).map(|row| self.planes.channel(row, channel)) {
-                    for (sum, levels) in chunks_mut(&mut sums[..columns]).iter_mut().zip(chunks(plane)) {
-                        *sum = join(*sum, *levels, |sum: i16, level| sum.plus(of(level)));
-                    }
-                }
-            }
+        let (rows, columns) = (row..row + pixels_high(question.grid), self.powers.columns().len());
+        for row in rows.clone() {
+            self.planes.read(question.frame, question.grid, row);
+        }
+        for (channel, sums) in self.columns.iter_mut().enumerate() {
+            let of = proof.square(channel);
+            self.planes.sum_rows(&mut sums[..columns], self.row, rows.clone(), channel, of);
         }
         self.row = Some(row);
     }

@@ -9,19 +9,16 @@ use crate::frame::Frame;
 use crate::statistics::Bounds;
 
 use super::cells::Cells;
-use super::exact::BLOCK_PX;
 use super::lanes::Work;
 use super::mesh::Mesh;
 use super::ranges::Ranges;
 use super::sub_blocks::SubBlocks;
-use super::sums::Sums;
 
 /// What was seen, and the memory to see it with.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Survey {
     ranges: Ranges,
     sub_blocks: SubBlocks,
-    sums: Sums,
 }
 
 /// A pass over the grid's region for a survey.
@@ -35,15 +32,9 @@ pub(super) struct Take<'a> {
 impl Work for Take<'_> {
     #[inline(always)]
     fn run(self) {
-        let Self { survey: Survey { ranges, sub_blocks, sums }, frame, grid, mesh } = self;
-        let region = grid.region();
-        let blocks = region.width.div_ceil(BLOCK_PX);
-        ranges.fit(mesh.cell_rows(region.height) as usize, blocks as usize);
-        if mesh.is_of_windows() {
-            sums.take(frame, grid, mesh, ranges);
-        } else {
-            sub_blocks.take(frame, grid, mesh, ranges);
-        }
+        let Self { survey: Survey { ranges, sub_blocks }, frame, grid, mesh } = self;
+        ranges.fit_to(grid, mesh);
+        sub_blocks.take(frame, grid, mesh, ranges);
     }
 }
 
