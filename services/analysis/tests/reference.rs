@@ -17,6 +17,7 @@ use analysis::score::{Claim, Score, score};
 use analysis::truth::{Truth, meant_object};
 use recording::check::{Verdict, check};
 use vision::Outcome;
+use vision::follow::Mode;
 
 const LARGEST_BYTES: u64 = 5 << 20;
 
@@ -32,17 +33,19 @@ fn recordings() -> [(PathBuf, Figures); 2] {
 }
 
 fn registered_again(file: &Path) -> Vec<Outcome> {
-    let input = Input::parse(file.to_str().unwrap()).unwrap();
-    let frames = input.open().unwrap();
-    let job = Job {
-        landmarks: None,
-        choice: FollowChoice::default(),
-        threads: NonZeroUsize::MIN,
-        timing: Timing::Off,
-        overlays: None,
+    registered(&[file], FollowChoice::default(), NonZeroUsize::MIN)
+}
+
+/// Every outcome of the files, in their order.
+fn registered(files: &[&Path], choice: FollowChoice, threads: NonZeroUsize) -> Vec<Outcome> {
+    let input = |file: &&Path| {
+        let input = Input::parse(file.to_str().unwrap()).unwrap();
+        let frames = input.open().unwrap();
+        (input, frames)
     };
+    let job = Job { landmarks: None, choice, threads, timing: Timing::Off, overlays: None };
     let mut outcomes = Vec::new();
-    let done = register(vec![(input, frames)], &job, |_, event| -> Result<(), Infallible> {
+    let done = register(files.iter().map(input).collect(), &job, |_, event| -> Result<(), Infallible> {
         let Event::Registered { outcome, .. } = event else { panic!("{event:?}") };
         outcomes.push(outcome);
         Ok(())
@@ -91,6 +94,19 @@ fn registered_again_they_score_no_worse() {
             assert!(new.false_rate.unwrap() <= old.false_rate.unwrap() + 0.02, "{what}");
             assert!(new.centre_median_px.unwrap() <= old.centre_median_px.unwrap() + 0.2, "{what}");
         }
+    }
+}
+
+#[test]
+fn several_threads_say_what_one_says_in_every_bit() {
+    let [rink, stop_sign] = recordings().map(|(file, _)| file);
+    let files = [rink.as_path(), stop_sign.as_path(), rink.as_path()];
+    for mode in [Mode::Faithful, Mode::Adaptive] {
+        let choice = FollowChoice { mode: Some(mode), ..FollowChoice::default() };
+        let [one, four] =
+            [1, 4].map(|threads| registered(&files, choice, NonZeroUsize::new(threads).unwrap()));
+        assert!(one.iter().flat_map(|outcome| &outcome.landmarks).any(|landmark| landmark.result.is_ok()));
+        assert!(one == four, "{}", mode.name());
     }
 }
 
