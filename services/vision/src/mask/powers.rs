@@ -10,16 +10,15 @@
 //! B is put together from sums of 1, 2, 4 … columns, each level twice the one before it: a handful of steps over whole
 //! chunks, where a running sum would go one column after another.
 
-use super::aligned::Aligned;
-use super::chunk::{WIDTH, add, chunks, chunks_mut, join, whole_chunks};
+use super::chunk::{WIDTH, add, chunks, chunks_mut, fit, join, whole_chunks};
 use super::lane::Lane;
 
 /// Column sums of a row of windows, and sums of 2ᵏ neighbouring ones for every k that B needs.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Powers<T> {
-    levels: Vec<Aligned<T>>,
+    levels: Vec<Vec<T>>,
     /// B.
-    lesser: Aligned<T>,
+    lesser: Vec<T>,
     /// Columns, in whole chunks, that every level covers; what windows at the last of them cover beyond is arbitrary.
     covered: usize,
     half: usize,
@@ -35,12 +34,12 @@ impl<T: Lane> Powers<T> {
         self.covered = columns;
         let levels = self.half.checked_ilog2().map_or(1, |largest| largest as usize + 1);
         if self.levels.len() < levels {
-            self.levels.resize_with(levels, Aligned::default);
+            self.levels.resize_with(levels, Vec::new);
         }
         for level in &mut self.levels {
-            level.fit(self.covered + self.half + WIDTH);
+            fit(level, self.covered + self.half + WIDTH);
         }
-        self.lesser.fit(self.covered);
+        fit(&mut self.lesser, self.covered);
     }
 
     /// The column sums, to be set.
@@ -51,7 +50,7 @@ impl<T: Lane> Powers<T> {
 
     /// Sums the column sums over every window: those that start on the first samples of columns, and on their second.
     #[inline(always)]
-    pub(super) fn build_into(&mut self, [on_first, on_second]: &mut [Aligned<T>; 2]) {
+    pub(super) fn build_into(&mut self, [on_first, on_second]: &mut [Vec<T>; 2]) {
         self.build();
         let columns = &self.levels[0];
         let first_columns = chunks(&columns[..self.covered]).iter();
@@ -132,11 +131,10 @@ mod tests {
             powers.fit(columns_under(64, side), side);
             let levels: Vec<i32> = (0..powers.columns().len() as u32).map(|x| (x * seed % 251) as i32).collect();
             powers.columns().copy_from_slice(&levels);
-            let mut sums = [Aligned::default(), Aligned::default()];
-            sums.iter_mut().for_each(|sums| sums.fit(levels.len()));
+            let mut sums = [vec![0; levels.len()], vec![0; levels.len()]];
             powers.build_into(&mut sums);
             for (phase, sums) in (0..).zip(&sums) {
-                for (start, &sum) in (phase..).step_by(2).zip(sums.iter()).take(64) {
+                for (start, &sum) in (phase..).step_by(2).zip(sums).take(64) {
                     let expected: i32 = DoubledGrid::pixels_under(start, side)
                         .map(|at| DoubledGrid::samples_on(at, start, side) as i32 * levels[at as usize]).sum();
                     prop_assert_eq!(sum, expected);

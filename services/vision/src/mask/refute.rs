@@ -8,7 +8,6 @@
 use crate::doubled_grid::DoubledGrid;
 use crate::statistics::Acceptance;
 
-use super::aligned::Aligned;
 use super::cells::Cells;
 use super::chunk::{WIDTH, chunks, chunks_mut, join};
 use super::exact::{Area, BLOCK_PX, Question, ROWS_TOGETHER};
@@ -96,7 +95,7 @@ pub(super) struct Refuter {
     /// The row of pixels on which the windows begin that the columns' sums are of.
     row: Option<u32>,
     /// The largest S of each column over the rows so far.
-    largest: Aligned<i16>,
+    largest: Vec<i16>,
     left: Cells,
 }
 
@@ -146,7 +145,7 @@ impl Refuter {
         let positions = WIDTH * area.blocks.len() + 1;
         self.powers.fit(columns_under(positions, window.width), window.width);
         let columns = self.powers.columns().len();
-        self.largest.fit(columns);
+        self.largest.resize(columns, i16::MIN);
         let rows = DoubledGrid::aligned_pixels(window.height);
         self.planes.fit(BLOCK_PX * area.blocks.start, columns, rows as usize);
         self.left.reset(bands as usize, area.blocks.len());

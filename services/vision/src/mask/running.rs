@@ -7,8 +7,7 @@
 //!
 //! The three channels lie in one row, each with the columns under its last windows: a loop runs once for all of them.
 
-use super::aligned::Aligned;
-use super::chunk::{Chunk, add, chunks, chunks_mut, join};
+use super::chunk::{Chunk, add, chunks, chunks_mut, fit, join};
 use super::lane::Lane;
 use super::planes::Planes;
 use super::powers::{Powers, columns_under};
@@ -18,8 +17,8 @@ use super::powers::{Powers, columns_under};
 pub(super) struct Running<T> {
     powers: Powers<T>,
     /// For windows on the first samples of columns, and on their second.
-    totals: [Aligned<T>; 2],
-    changes: [Aligned<T>; 2],
+    totals: [Vec<T>; 2],
+    changes: [Vec<T>; 2],
     /// The rows of pixels, entering and leaving, that `changes` come from.
     changed_by: Option<(u32, u32)>,
     /// The mask row that `totals` are of.
@@ -36,7 +35,7 @@ impl<T: Lane> Running<T> {
         self.columns = columns_under(positions, side);
         self.powers.fit(3 * self.columns, side);
         for buffer in self.totals.iter_mut().chain(&mut self.changes) {
-            buffer.fit(3 * self.columns);
+            fit(buffer, 3 * self.columns);
         }
         (self.positions, self.changed_by, self.row) = (positions, None, None);
     }

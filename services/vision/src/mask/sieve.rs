@@ -85,9 +85,10 @@ impl Sieve {
             let row = frame.row(region.y + mesh.pixel_rows(band).start);
             self.average(&row[start..start + 3 * region.width as usize], mesh.sub_block().width_px.ilog2());
             for levels in levels {
-                compare(&self.averages, levels, &mut self.inside);
+                let inside: &mut [u8] = &mut self.inside;
+                compare(&self.averages, levels, inside);
                 for (block, alive) in cells.band(band as usize).iter_mut().enumerate() {
-                    *alive |= any_pixel(&self.inside[BLOCK_BYTES * block..][..BLOCK_BYTES + 3]);
+                    *alive |= any_pixel(&inside[BLOCK_BYTES * block..][..BLOCK_BYTES + 3]);
                 }
             }
         }

@@ -9,9 +9,8 @@ use crate::bitmask::BitMask;
 use crate::doubled_grid::DoubledGrid;
 use crate::statistics::Acceptance;
 
-use super::aligned::Aligned;
 use super::cells::Cells;
-use super::chunk::{self, WIDTH, chunks, chunks_mut, join};
+use super::chunk::{self, WIDTH, chunks, chunks_mut, fit, join};
 use super::exact::{Area, BLOCK_PX, Question, ROWS_TOGETHER, set};
 use super::lane::Lane;
 use super::lanes::Work;
@@ -77,7 +76,7 @@ fn pixels_high(grid: &DoubledGrid) -> u32 {
 pub(super) struct Sure {
     planes: Planes,
     /// Q of the columns over the rows under the windows.
-    columns: [Aligned<i16>; 3],
+    columns: [Vec<i16>; 3],
     powers: Powers<i16>,
     /// For each block, a bit for each pixel whose windows are proven to match.
     proven: Vec<u32>,
@@ -127,7 +126,7 @@ impl Sure {
         self.powers.fit(columns_under(positions, side), side);
         let columns = self.powers.columns().len();
         for sums in &mut self.columns {
-            sums.fit(columns);
+            fit(sums, columns);
         }
         self.planes.fit(BLOCK_PX * area.blocks.start, columns, pixels_high(question.grid) as usize);
         self.row = None;
