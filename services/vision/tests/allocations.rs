@@ -138,7 +138,7 @@ fn following_adaptively_allocates_within_bounds() {
     let (frames, objects) = (12, 4);
     let counted = allocations_of_following(Mode::Adaptive);
     assert!(
-        counted < 350 * frames * objects,
+        counted < 160 * frames * objects,
         "{counted} allocations for {objects} objects in {frames} frames"
     );
 }

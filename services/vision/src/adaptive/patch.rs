@@ -110,9 +110,12 @@ impl Patch {
     /// The rectangle around the set pixels, in the frame; `None` of nothing.
     pub(crate) fn bounds(&self) -> Option<RectPx> {
         let (mut left, mut top, mut right, mut bottom) = (u32::MAX, u32::MAX, 0, 0);
-        for run in self.runs() {
-            (left, top) = (left.min(run.x_start), top.min(run.y));
-            (right, bottom) = (right.max(run.x_end), bottom.max(run.y + 1));
+        for y in 0..self.rect.height {
+            for (first, word) in (0..).step_by(64).zip(self.mask.row_words(y)).filter(|(_, word)| **word != 0)
+            {
+                (left, top) = (left.min(first + word.trailing_zeros()), top.min(y));
+                (right, bottom) = (right.max(first + 64 - word.leading_zeros()), y + 1);
+            }
         }
         let (x, y) = (self.rect.x.wrapping_add(left), self.rect.y.wrapping_add(top));
         (left < right).then(|| RectPx { x, y, width: right - left, height: bottom - top })
