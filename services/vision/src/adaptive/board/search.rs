@@ -12,6 +12,9 @@ use crate::geometry::RectPx;
 
 /// Lights tried where nothing is known of it, over the most likely one.
 const GAINS: [f32; 5] = [1.0, 0.89, 1.12, 0.8, 1.25];
+/// After so many of them, what scores so much has told the light, which is nearly the same on all signs.
+const LIKELY_GAINS: usize = 3;
+const CLEAR_SCORE: f32 = 0.8;
 /// Pixels that belong to a sign by this are seeds.
 const SEED: f32 = 0.5;
 /// Signs that overlap are parted in at most so many rounds.
@@ -45,7 +48,10 @@ pub(in crate::adaptive) fn find(
     let Some(face) = search.likeness.face() else { return Vec::new() };
     let gains = if search.likeness.is_light_unknown() { &GAINS[..] } else { &GAINS[..1] };
     let mut found: Vec<Found> = Vec::new();
-    for gain in gains {
+    for (tried, gain) in gains.iter().enumerate() {
+        if tried >= LIKELY_GAINS && found.iter().any(|(_, candidate)| candidate.score >= CLEAR_SCORE) {
+            break;
+        }
         let colours = face.colours();
         let mixtures = colours.under(gain * search.gain, search.noise_variance);
         let light = Light { search, colours, mixtures: &mixtures };
