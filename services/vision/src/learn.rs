@@ -130,7 +130,10 @@ pub fn learn(regions: &[(&Frame, RectPx)], options: &LearnOptions) -> Result<Lan
         check_region(frame, *region)?;
     }
     let samples: Vec<windows::Sample> = match options.template {
-        Template::Object => regions.iter().map(|(frame, region)| object::sample(frame, *region)).collect(),
+        Template::Object => {
+            let tones = if options.shape.is_sign() { object::Tones::Apart } else { object::Tones::Together };
+            regions.iter().map(|(frame, region)| object::sample(frame, *region, tones)).collect()
+        }
         Template::Exact => {
             regions.iter().map(|(frame, region)| windows::Sample::exact(frame, *region)).collect()
         }

@@ -30,10 +30,10 @@ const SAME_DIRECTION: f32 = 0.96;
 
 /// How tones of one colour are judged.
 #[derive(Clone, Copy, PartialEq)]
-enum Tones {
-    /// Each as a colour of its own.
+pub(super) enum Tones {
+    /// Each as a colour of its own: what lies between a sign's tint and its lettering is a mixture of both.
     Apart,
-    /// As one colour.
+    /// As one colour, on which gloss lies: a frame of it spans more than the face in it.
     Together,
 }
 
@@ -45,30 +45,15 @@ impl Tones {
 }
 
 /// The object's shades in one region and the pixels that show them.
-pub(super) fn sample(frame: &Frame, region: RectPx) -> Sample {
+pub(super) fn sample(frame: &Frame, region: RectPx, tones: Tones) -> Sample {
     let colours = palette(pixels(frame, neighbourhood(frame, region)), palette_radius(region), PALETTE_LIMIT);
-    let judged = |tones: Tones| {
-        let own = object_colours(frame, region, &colours, tones);
-        let label_of = |pixel: [u8; 3]| match nearest(&colours, levels(pixel)) {
-            Some((at, _)) if own[at] => Some(at),
-            _ => None,
-        };
-        let labels: Vec<Option<usize>> = pixels(frame, region).map(label_of).collect();
-        let spanning = spanning_colour(region, &labels, &colours, tones);
-        (labels, spanning, tones)
+    let own = object_colours(frame, region, &colours);
+    let label_of = |pixel: [u8; 3]| match nearest(&colours, levels(pixel)) {
+        Some((at, _)) if own[at] => Some(at),
+        _ => None,
     };
-    // Tones of one colour are mixtures at its edges more often than they are gloss: they are judged together only where each
-    // by itself would be outdone by what it frames.
-    let (apart, together) = (judged(Tones::Apart), judged(Tones::Together));
-    let same = match (&apart.1, &together.1) {
-        (Some(one), Some(other)) => Tones::Together.are_one(colours[other.0], colours[one.0]),
-        _ => true,
-    };
-    let (labels, spanning, tones) = if same { apart } else { together };
-    let labels = match spanning {
-        Some(main) => keep_shades(region, &labels, &colours, main, tones),
-        None => labels,
-    };
+    let labels: Vec<Option<usize>> = pixels(frame, region).map(label_of).collect();
+    let labels = keep_shades(region, &labels, &colours, tones);
     Sample::new(frame, region, labels)
 }
 
@@ -100,11 +85,10 @@ fn neighbourhood(frame: &Frame, region: RectPx) -> RectPx {
     RectPx { x, y, width, height }
 }
 
-/// For each colour whether it is the object's: much denser in the middle of the box than around the box, or a tone of
-/// such a colour that is much denser in the box.
-fn object_colours(frame: &Frame, region: RectPx, colours: &[Cluster], tones: Tones) -> Vec<bool> {
-    let none = vec![0_u32; colours.len()];
-    let (mut middle, mut edge, mut around) = (none.clone(), none.clone(), none);
+/// For each colour whether it is the object's: much denser in the middle of the box than around the box.
+fn object_colours(frame: &Frame, region: RectPx, colours: &[Cluster]) -> Vec<bool> {
+    let mut middle = vec![0_u32; colours.len()];
+    let mut around = vec![0_u32; colours.len()];
     let near = neighbourhood(frame, region);
     for y in near.y..near.y + near.height {
         for x in near.x..near.x + near.width {
@@ -112,19 +96,14 @@ fn object_colours(frame: &Frame, region: RectPx, colours: &[Cluster], tones: Ton
             match place(region, x, y) {
                 Place::Middle => middle[at] += 1,
                 Place::Around => around[at] += 1,
-                Place::Edge => edge[at] += 1,
+                Place::Edge => {}
             }
         }
     }
     let share = |counts: &[u32], at: usize| counts[at] as f32 / counts.iter().sum::<u32>().max(1) as f32;
-    let dense = |counts: &[u32], at: usize| {
-        share(counts, at) >= LEAST_OWN && share(counts, at) >= DENSITY_RATIO * (share(&around, at) + 0.005)
-    };
-    let fills: Vec<bool> = (0..colours.len()).map(|at| dense(&middle, at)).collect();
-    let tone_of_own =
-        |at: usize| (0..colours.len()).any(|own| fills[own] && tones.are_one(colours[own], colours[at]));
+    let ratio = |at: usize| share(&middle, at) / (share(&around, at) + 0.005);
     let mut own: Vec<bool> =
-        (0..colours.len()).map(|at| fills[at] || (dense(&edge, at) && tone_of_own(at))).collect();
+        (0..colours.len()).map(|at| ratio(at) >= DENSITY_RATIO && share(&middle, at) >= LEAST_OWN).collect();
     // A box inside a larger thing of the same colour has no outside: its commonest colour must do.
     if !own.contains(&true)
         && let Some(best) =
@@ -170,19 +149,6 @@ fn place(region: RectPx, x: u32, y: u32) -> Place {
     }
 }
 
-/// The colour that spans the object, and where it shows.
-fn spanning_colour(
-    region: RectPx,
-    labels: &[Option<usize>],
-    colours: &[Cluster],
-    tones: Tones,
-) -> Option<(usize, Shade)> {
-    let seen = |main: &usize| labels.contains(&Some(*main));
-    let shade = |main: usize| Shade::of(region, labels, |at| tones.are_one(colours[main], colours[at]));
-    let all = (0..colours.len()).filter(seen).map(|main| (main, shade(main)));
-    all.max_by(|a, b| a.1.merit().total_cmp(&b.1.merit()))
-}
-
 /// Takes lettering, inlays, borders and mixed edge pixels away: what stays is the colour that spans the object, its darker,
 /// lighter and glossier tones, and other faces of some extent beside it. What lies inside belongs to the object by its
 /// outline.
@@ -190,17 +156,21 @@ fn keep_shades(
     region: RectPx,
     labels: &[Option<usize>],
     colours: &[Cluster],
-    (main, spanning): (usize, Shade),
     tones: Tones,
 ) -> Vec<Option<usize>> {
     let object = labels.iter().flatten().count().max(1) as f32;
+    let are_one = |main: usize, at: usize| tones.are_one(colours[main], colours[at]);
+    let colour = |main: usize| Shade::of(region, labels, |at| are_one(main, at));
+    let seen = |main: &usize| labels.contains(&Some(*main));
+    let by_merit = |a: &(usize, Shade), b: &(usize, Shade)| a.1.merit().total_cmp(&b.1.merit());
+    let all = (0..colours.len()).filter(seen).map(|main| (main, colour(main)));
+    let Some((main, spanning)) = all.max_by(by_merit) else { return labels.to_vec() };
     let outline = spanning.body.convex();
     let keep: Vec<bool> = (0..colours.len())
         .map(|at| {
             let shade = Shade::of(region, labels, |other| other == at);
             let large = shade.pixels as f32 >= MIN_SHARE * object;
-            let tone = tones.are_one(colours[main], colours[at])
-                || same_shading(colours[main].mean, colours[at].mean);
+            let tone = are_one(main, at) || same_shading(colours[main].mean, colours[at].mean);
             at == main || (large && (tone || (shade.is_solid() && !shade.lies_inside(&outline))))
         })
         .collect();
