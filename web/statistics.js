@@ -3,17 +3,17 @@
 /** @typedef {{mean: number[], variance: number[]}} Statistics */
 /** @typedef {{expected: number, tolerance: number, isUpperBound: boolean, observed: number | null, offBy: number | null, within: boolean | null}} Comparison an upper bound is met by anything below */
 
-/** @typedef {{gain?: number | null, tolerance_scale?: number | null, noise_variance?: number[] | null}} Adaptation how the registration adapted to a frame; nothing of it in faithful mode */
+/** @typedef {{gain?: number | null, haze?: number | null, tolerance_scale?: number | null, noise_variance?: number[] | null}} Adaptation how the registration adapted to a frame; nothing of it in faithful mode */
 
 /**
- * Compares what was observed with the nearest shade, as the registration did: under another light the means scale with
- * the gain and the variances with its square, tolerances of the means are wider, and the camera's noise comes on top. There an object
+ * Compares what was observed with the nearest shade, as the registration did: under another light haze adds to the
+ * means, which scale with the gain, and the variances with its square, tolerances of the means are wider, and the camera's noise comes on top. There an object
  * that is smoother than it was when it was learned, since it is blurred or far away, is none the less the same.
  * @param {{shades: Statistics[], tolerance: Statistics}} landmark @param {Statistics | null | undefined} observed @param {Adaptation} adaptation
  */
-export function compare(landmark, observed, { gain, tolerance_scale, noise_variance }) {
+export function compare(landmark, observed, { gain, haze, tolerance_scale, noise_variance }) {
   const isAdapted = typeof gain === "number" && gain > 0;
-  const shades = landmark.shades.map((shade) => (isAdapted ? inLight(shade, gain, noise_variance ?? [0, 0, 0]) : shade));
+  const shades = landmark.shades.map((shade) => (isAdapted ? inLight(shade, { gain, haze: haze ?? 0 }, noise_variance ?? [0, 0, 0]) : shade));
   const tolerance = { ...landmark.tolerance, mean: landmark.tolerance.mean.map((mean) => mean * (tolerance_scale ?? 1)) };
   // The gain is that of the shade whose colour is nearest; without one all six statistics decide.
   const index = observed ? nearest(shades, tolerance, observed, isAdapted ? ["mean"] : ["mean", "variance"]) : 0;
@@ -24,10 +24,10 @@ export function compare(landmark, observed, { gain, tolerance_scale, noise_varia
   return { shade: index + 1, shades: shades.length, mean: side("mean"), variance: side("variance") };
 }
 
-/** @param {Statistics} shade @param {number} gain @param {number[]} noise @returns {Statistics} */
-function inLight(shade, gain, noise) {
+/** @param {Statistics} shade @param {{gain: number, haze: number}} light @param {number[]} noise @returns {Statistics} */
+function inLight(shade, { gain, haze }, noise) {
   return {
-    mean: shade.mean.map((value) => Math.min(255, value * gain)),
+    mean: shade.mean.map((value) => Math.min(255, Math.min(255, Math.max(0, value + haze)) * gain)),
     variance: shade.variance.map((value, channel) => value * gain * gain + noise[channel]),
   };
 }

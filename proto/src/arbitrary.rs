@@ -107,9 +107,11 @@ fn predictions() -> impl Strategy<Value = Prediction> {
 }
 
 fn adaptations() -> impl Strategy<Value = Adaptation> {
-    (0.0f32..4.0, prop::array::uniform3(0.0f32..100.0), any::<u16>(), 0.0f32..4.0, any::<bool>()).prop_map(
-        |(gain, noise_variance, window_px, tolerance_scale, full_frame)| Adaptation {
+    let light = (0.0f32..4.0, -255.0f32..=255.0);
+    (light, prop::array::uniform3(0.0f32..100.0), any::<u16>(), 0.0f32..4.0, any::<bool>()).prop_map(
+        |((gain, haze), noise_variance, window_px, tolerance_scale, full_frame)| Adaptation {
             gain,
+            haze,
             noise_variance,
             window_px,
             tolerance_scale,
@@ -202,12 +204,13 @@ fn predictors() -> impl Strategy<Value = Predictor> {
 }
 
 fn tracks() -> impl Strategy<Value = Track> {
-    let followed = (0.0f32..4.0, 0.0f32..=1.0, 0.0f32..1e6);
+    let followed = (0.0f32..4.0, -255.0f32..=255.0, 0.0f32..=1.0, 0.0f32..1e6);
     (any::<u32>(), predictors(), followed, any::<u32>(), any::<u32>()).prop_map(
-        |(instance, predictor, (gain, score, whole_area_px2), sightings, misses)| Track {
+        |(instance, predictor, (gain, haze, score, whole_area_px2), sightings, misses)| Track {
             instance,
             predictor,
             gain,
+            haze,
             score,
             whole_area_px2,
             sightings,

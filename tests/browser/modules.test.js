@@ -70,6 +70,8 @@ test("the nearest shade is compared, in the light of the moment", async () => {
   assert.deepEqual(adapted.mean.map((/** @type {any} */ one) => one.tolerance), mean.map((/** @type {any} */ one) => 2 * one.tolerance));
   assert.deepEqual(adapted.variance.map((/** @type {any} */ one) => one.expected), [28, 22, 16]);
   assert.deepEqual(adapted.variance.map((/** @type {any} */ one) => one.tolerance), variance.map((/** @type {any} */ one) => one.tolerance));
+  const hazy = await call("/statistics.js", "compare", LANDMARK, dim, { gain: 0.5, haze: 10 });
+  assert.deepEqual(hazy.mean.map((/** @type {any} */ one) => one.expected), [25, 40, 85]);
   // Smoother than learned is no fault of what was followed; rougher is.
   const blurred = await call("/statistics.js", "compare", LANDMARK, { ...dim, variance: [0, 0, 900] }, { gain: 0.5 });
   assert.deepEqual(blurred.variance.map((/** @type {any} */ one) => one.within), [true, true, false]);

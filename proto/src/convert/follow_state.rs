@@ -8,7 +8,7 @@ use vision::register::ShapeVeto;
 use vision::{PointPx, Timestamp};
 
 use super::check::{
-    InvalidField, count_within, digest, finite, finite_f64, fraction, not_negative, point, present,
+    InvalidField, count_within, digest, finite, finite_f64, fraction, not_negative, point, present, within,
 };
 use super::stats::channels;
 use crate::keys::Id;
@@ -68,7 +68,7 @@ fn landmark_to_wire(state: &LandmarkState) -> v1::LandmarkTracks {
 }
 
 fn track_to_wire(track: &Track) -> v1::Track {
-    let Track { instance, predictor, gain, score, whole_area_px2, sightings, misses } = track;
+    let Track { instance, predictor, gain, haze, score, whole_area_px2, sightings, misses } = track;
     let Predictor { method, kalman, fixes } = predictor;
     v1::Track {
         instance: *instance,
@@ -76,6 +76,7 @@ fn track_to_wire(track: &Track) -> v1::Track {
         motion: Some(motion_to_wire(kalman)),
         fixes: fixes.iter().map(fix_to_wire).collect(),
         gain: *gain,
+        haze: *haze,
         score: *score,
         whole_area_px2: *whole_area_px2,
         sightings: *sightings,
@@ -173,6 +174,7 @@ fn track(wire: &v1::Track) -> Result<Track, InvalidField> {
             fixes: wire.fixes.iter().enumerate().map(fix).collect::<Result<_, _>>()?,
         },
         gain: not_negative("gain", wire.gain)?,
+        haze: within("haze", wire.haze, -255.0..=255.0)?,
         score: fraction("score", wire.score)?,
         whole_area_px2: not_negative("whole_area_px2", wire.whole_area_px2)?,
         sightings: wire.sightings,

@@ -6,7 +6,7 @@ use vision::{
     Timestamp,
 };
 
-use super::check::{InvalidField, digest, finite, fraction, not_negative, point, present};
+use super::check::{InvalidField, digest, finite, fraction, not_negative, point, present, within};
 use super::stats::{channels, observed_stats};
 use crate::keys::Id;
 use crate::v1;
@@ -153,6 +153,7 @@ fn adaptation(wire: &v1::Adaptation) -> Result<Adaptation, InvalidField> {
         .map_err(|_| InvalidField::new("adaptation.window_px", wire.window_px, "at most 65535"))?;
     Ok(Adaptation {
         gain: not_negative("adaptation.gain", wire.gain)?,
+        haze: within("adaptation.haze", wire.haze, -255.0..=255.0)?,
         noise_variance: channels("adaptation.noise_variance", &wire.noise_variance, not_negative)?,
         window_px,
         tolerance_scale: not_negative("adaptation.tolerance_scale", wire.tolerance_scale)?,

@@ -124,6 +124,7 @@ fn gate_to_wire(gate: &Gate) -> v1::Gate {
 fn adaptation_to_wire(adaptation: &Adaptation) -> v1::Adaptation {
     v1::Adaptation {
         gain: adaptation.gain,
+        haze: adaptation.haze,
         noise_variance: adaptation.noise_variance.to_vec(),
         window_px: adaptation.window_px.into(),
         tolerance_scale: adaptation.tolerance_scale,

@@ -183,6 +183,8 @@ pub struct LandmarkStatus {
     pub range_m: Option<f32>,
     /// Observed brightness over the descriptor's.
     pub gain: Option<f32>,
+    /// White added to the descriptor's colours before the gain, levels.
+    pub haze: Option<f32>,
     /// Factor on the descriptor's mean tolerances under this light.
     pub tolerance_scale: Option<f32>,
     /// Noise variance of this camera, taken out of the observed variance, levels², R, G, B.
@@ -287,6 +289,7 @@ pub(crate) fn landmark_from_outcome(outcome: &LandmarkOutcome, place: Place) -> 
         bearing_rad: place.bearing_rad,
         range_m: place.range_m,
         gain: outcome.adaptation.map(|adaptation| adaptation.gain),
+        haze: outcome.adaptation.map(|adaptation| adaptation.haze),
         tolerance_scale: outcome.adaptation.map(|adaptation| adaptation.tolerance_scale),
         noise_variance: outcome.adaptation.map(|adaptation| adaptation.noise_variance),
         predicted_x_px: prediction.map(|prediction| prediction.centroid.x),

@@ -26,5 +26,5 @@ mod window;
 
 pub(crate) use candidate::{Candidate, Finder, Search};
 pub(crate) use coarse::Coarse;
-pub(crate) use likeness::Likeness;
+pub(crate) use likeness::{Light, Likeness};
 pub(crate) use tracing::Tracer;

@@ -16,7 +16,7 @@ pub use state::{FollowState, LandmarkState, Track};
 use std::fmt;
 use std::sync::Arc;
 
-use crate::adaptive::{Finder, Likeness, Search, Tracer, noise, sharpness};
+use crate::adaptive::{Finder, Light, Likeness, Search, Tracer, noise, sharpness};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
 use crate::landmark::{Landmark, LandmarkSet};
@@ -103,11 +103,11 @@ impl<'a> Scene<'a> {
         landmark: &'a Landmark,
         region: RectPx,
         likeness: &'a Likeness,
-        gain: f32,
+        light: Light,
         seeds: usize,
     ) -> Search<'a> {
         let Self { frame, noise_variance, blur_px, .. } = *self;
-        Search { frame, region, landmark, likeness, gain, noise_variance, blur_px, limit: seeds }
+        Search { frame, region, landmark, likeness, light, noise_variance, blur_px, limit: seeds }
     }
 }
 

@@ -123,6 +123,9 @@ pub struct Gate {
 pub struct Adaptation {
     /// Observed brightness over the descriptor's.
     pub gain: f32,
+    /// White that haze, gloss or the camera adds to the descriptor's colours before the gain, levels; negative where it
+    /// is less than when they were learned.
+    pub haze: f32,
     /// Noise variance of this camera taken out of the observed variance, levels², R, G, B.
     pub noise_variance: [f32; 3],
     /// Side of the square window in use on the doubled grid.

@@ -5,7 +5,7 @@ mod scene;
 use scene::{Block, GREY, HEIGHT, RED, WIDTH, picture, red_landmark, seen, set_of, stamp};
 use vision::frame::decode::{DecodeLimits, decode};
 use vision::frame::encode::{Quality, encode_jpeg};
-use vision::{Follow, FollowOptions, Landmark, Miss, Mode, NoProbe, ShapeClass};
+use vision::{Follow, FollowOptions, Frame, Landmark, Miss, Mode, NoProbe, ShapeClass};
 
 fn follower() -> Follow {
     Follow::new(FollowOptions::default(), set_of(vec![red_landmark()]))
@@ -58,6 +58,22 @@ fn a_swing_of_the_light_is_followed_and_reported() {
         // Tolerances widen with the distance from the descriptor's light, and that is told too.
         let departure = (reported - 1.0).abs();
         assert_eq!(adaptation.tolerance_scale > 1.05, departure > 0.03, "frame {k}: {adaptation:?}");
+    }
+}
+
+#[test]
+fn haze_that_comes_and_goes_is_followed_and_reported() {
+    let mut follow = follower();
+    for k in 0..70 {
+        let haze = 50.0 * (k as f32 / 14.0).sin().max(-0.4);
+        let clear = picture(&[moving(k)], 1.0, k);
+        let hazy = clear.rgb().iter().map(|&level| (f32::from(level) + haze).clamp(0.0, 255.0) as u8);
+        let frame = Frame::from_rgb(clear.width(), clear.height(), hazy.collect()).unwrap();
+        let outcome = follow.on_frame(&frame, stamp(k), &mut NoProbe);
+        let [(row, sighting)] = seen(&outcome)[..] else { panic!("frame {k}: {:?}", outcome.landmarks) };
+        assert!(sighting.centroid.distance_px(moving(k).centre()) < 0.5, "frame {k}");
+        let adaptation = row.adaptation.unwrap();
+        assert!((adaptation.haze - haze).abs() < 15.0, "frame {k}: {adaptation:?} for {haze}");
     }
 }
 

@@ -99,6 +99,7 @@ impl Pair<'_> {
 
     fn adaptation(&mut self) {
         self.number("gain", |it| it.adaptation.map(|adapted| adapted.gain));
+        self.number("haze", |it| it.adaptation.map(|adapted| adapted.haze));
         self.numbers("noise_variance", |it| it.adaptation.map(|adapted| adapted.noise_variance.to_vec()));
         self.number("window_px", |it| it.adaptation.map(|adapted| adapted.window_px.into()));
         self.number("tolerance_scale", |it| it.adaptation.map(|adapted| adapted.tolerance_scale));

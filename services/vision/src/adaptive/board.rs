@@ -62,7 +62,7 @@ impl Board {
     /// How much it looks like the sign, 0..1.
     fn score(&self, search: &Search<'_>, colours: &TwoColours, area_px2: f32, gain: f32) -> f32 {
         let size = area_px2 / (area_px2 + SPECK_AREA_PX2);
-        let light = (-0.5 * ((gain / search.gain).max(1e-3).ln() / LIGHT_SIGMA).powi(2)).exp();
+        let light = (-0.5 * ((gain / search.light.gain).max(1e-3).ln() / LIGHT_SIGMA).powi(2)).exp();
         let fill = (self.fill / FULL).min(1.0).powi(2);
         let face = self.tone(colours) * self.lettered(colours);
         (size * light * fill * (1.0 - self.around) * face).powf(SCALE)

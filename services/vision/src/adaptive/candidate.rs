@@ -5,7 +5,7 @@ use super::choose::{self, Form};
 use super::disc;
 use super::face::LETTERING_BRIGHTNESS;
 use super::like::Marker;
-use super::likeness::Likeness;
+use super::likeness::{Light, Likeness};
 use super::patch::Patch;
 use super::segment::{self, Parts, Segmented};
 use super::soft_edge::{self, Edge};
@@ -29,6 +29,8 @@ const FILLED_SOLIDITY: f32 = 0.55;
 const WHOLE_SOLIDITY: f32 = 0.8;
 /// What is more like a shadow than like the landmark keeps this part of its score.
 const IF_SHADOW: f32 = 0.3;
+/// Haze is told from about so many pixels.
+const HAZE_SAMPLES: usize = 300;
 /// Seeds larger than this show an outline, px.
 const DISC_SIZE_PX: u32 = 20;
 /// A sign's tint is looked for pale and deep: what is pale joins with things of a similar tint, what is deep falls
@@ -49,8 +51,8 @@ pub(crate) struct Search<'a> {
     pub(crate) region: RectPx,
     pub(crate) landmark: &'a Landmark,
     pub(crate) likeness: &'a Likeness,
-    /// The gain that is most likely.
-    pub(crate) gain: f32,
+    /// The light that is most likely.
+    pub(crate) light: Light,
     pub(crate) noise_variance: [f32; 3],
     /// Standard deviation of the frame's blur.
     pub(crate) blur_px: f32,
@@ -64,8 +66,8 @@ pub(crate) struct Candidate {
     pub(crate) object: Patch,
     pub(crate) centroid: PointPx,
     pub(crate) area_px2: f32,
-    /// Brightness over the descriptor's.
-    pub(crate) gain: f32,
+    /// Brightness and haze over the descriptor's.
+    pub(crate) light: Light,
     /// The six statistics of its best window.
     pub(crate) observed: ColorStats,
     /// Side of that window on the doubled grid.
@@ -282,13 +284,14 @@ fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Opti
     let (window_px, observed) = window::best(search, &object, area_px2)?;
     let factors = choose::factors(search, &object, form, area_px2, &observed);
     let cut = object.touches_border(search.frame.width(), search.frame.height());
-    let gain = search.likeness.nearest(observed.mean).gain;
-    let tolerance_scale = search.likeness.tolerance_scale(search.landmark, gain);
+    let seen = search.likeness.nearest(observed.mean);
+    let light = Light { gain: seen.gain, haze: haze(search, &object) };
+    let tolerance_scale = search.likeness.tolerance_scale(search.landmark, light.gain);
     Some(Candidate {
         object,
         centroid,
         area_px2,
-        gain,
+        light,
         observed,
         window_px,
         tolerance_scale,
@@ -299,10 +302,28 @@ fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Opti
     })
 }
 
+/// White that the object's own colours have more than the descriptor's, levels; signs are known by their tint, which haze
+/// leaves as it is.
+fn haze(search: &Search<'_>, object: &Patch) -> f32 {
+    if search.likeness.face().is_some() {
+        return 0.0;
+    }
+    let step = (object.count() / HAZE_SAMPLES).max(1);
+    let (mut n, mut sum) = (0.0_f32, 0.0_f32);
+    for (x, y) in object.set_places().step_by(step | 1) {
+        let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
+        if search.likeness.matches(pixel) {
+            sum += search.likeness.haze(pixel.map(f32::from));
+            n += 1.0;
+        }
+    }
+    if n > 0.0 { sum / n } else { search.light.haze }
+}
+
 /// A sign's border: light and without a tint, wider on larger signs.
 fn border(search: &Search<'_>, object: &Patch) -> Edge {
     let brightest = search.landmark.shades.iter().flat_map(|shade| shade.mean).fold(0.0, f32::max);
-    let level = (LETTERING_BRIGHTNESS * search.gain * brightest).min(255.0);
+    let level = (LETTERING_BRIGHTNESS * search.light.gain * brightest).min(255.0);
     let size_px = (object.count() as f32).sqrt();
     Edge::Bordered { color: [level; 3], width_px: (0.06 * size_px).round().clamp(1.0, 6.0) as i32 }
 }

@@ -218,7 +218,7 @@ pub(crate) fn factors(
         let smear = if form.fitted.is_some() { pale.max(form.lettering) } else { pale };
         let unresolved = lettered.max((1.0 + (smear + 0.02) / PLAIN_SMEAR).clamp(0.3, 1.0));
         Factors {
-            light: off((seen.color.gain / search.gain).max(1e-3).ln(), 0.4),
+            light: off((seen.color.gain / search.light.gain).max(1e-3).ln(), 0.4),
             colour: off(seen.color.excess, sigma),
             texture_shown: lettered,
             texture: resolved * lettered + (1.0 - resolved) * unresolved,
@@ -233,7 +233,7 @@ pub(crate) fn factors(
         let color = search.likeness.nearest(observed.mean);
         let texture = off(variance_excess(search, observed), 3.0);
         Factors {
-            light: off((color.gain / search.gain).max(1e-3).ln(), 0.25),
+            light: off((color.gain / search.light.gain).max(1e-3).ln(), 0.25),
             colour: off(color.excess, 0.7),
             texture,
             texture_shown: texture,

@@ -146,6 +146,7 @@ pub(crate) fn like_words(row: &[u8], coarse: &Coarse, likeness: &Likeness, bits:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::adaptive::likeness::Light;
     use crate::components::Components;
     use crate::landmark::{ColorStats, Digest, Landmark, ShapeClass, WindowPx};
     use proptest::prelude::*;
@@ -164,7 +165,7 @@ mod tests {
             size_m: None,
             digest: Digest::default(),
         };
-        Likeness::anywhere(&landmark, 1.0, [4.0; 3])
+        Likeness::anywhere(&landmark, Light::AS_LEARNED, [4.0; 3])
     }
 
     /// Noise of all colours with flat discs of the landmark's.

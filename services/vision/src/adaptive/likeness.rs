@@ -2,6 +2,7 @@
 
 use super::coarse::Coarse;
 use super::face::{self, Face};
+use super::palette::{dot, minus};
 use crate::landmark::{ColorStats, Landmark};
 
 /// The mean tolerance is kept between these, levels: below, JPEG noise defeats it; above, everything matches.
@@ -17,6 +18,12 @@ const WIDENING: f32 = 0.12;
 
 /// What stands before a surface of nearly its own colour is told from it within this part of the tolerances.
 const STRICT: f32 = 0.6;
+
+/// Less haze than this is left to the tolerances: what faces, shadows and lenses do to colours looks like a little, levels.
+const COVERED_HAZE: f32 = 8.0;
+/// So sure it is that there is no haze, in the squared length of what of white is not the shade: 1.2 of pure red, 0.03 of
+/// cream.
+const HAZE_PRIOR: f32 = 0.05;
 
 /// A shade is vivid when its channels differ by this part of the largest.
 const VIVID: f32 = 0.4;
@@ -41,6 +48,8 @@ pub(crate) struct Likeness {
 #[derive(Clone, Copy, Debug)]
 struct Cone {
     shade: [f32; 3],
+    /// White in it that the descriptor's shade has not, levels.
+    haze: f32,
     /// Under the light of the descriptor.
     tolerance: [f32; 3],
     /// What is added to it for each unit by which the gain differs from 1.
@@ -48,6 +57,20 @@ struct Cone {
     /// `shade / |shade|²`: the dot product with a colour is that colour's gain.
     onto_shade: [f32; 3],
     gain: (f32, f32),
+}
+
+/// The light on an object and what lies between it and the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Light {
+    /// Brightness over the descriptor's.
+    pub(crate) gain: f32,
+    /// White that haze, gloss or the camera adds to the descriptor's colours, levels; negative where it is less than there.
+    pub(crate) haze: f32,
+}
+
+impl Light {
+    /// As it was when the descriptor was made.
+    pub(crate) const AS_LEARNED: Self = Self { gain: 1.0, haze: 0.0 };
 }
 
 /// How a colour compares with the nearest shade.
@@ -61,31 +84,35 @@ pub(crate) struct Match {
 
 impl Likeness {
     /// For a search of the whole frame, nothing known of the light but `gain`, its most likely value.
-    pub(crate) fn anywhere(landmark: &Landmark, gain: f32, noise_variance: [f32; 3]) -> Self {
-        Self::new(landmark, gain, FULL_SEARCH_GAIN, noise_variance)
+    pub(crate) fn anywhere(landmark: &Landmark, light: Light, noise_variance: [f32; 3]) -> Self {
+        Self::new(landmark, light, FULL_SEARCH_GAIN, noise_variance)
     }
 
-    /// For an object that was last seen under `gain`.
-    pub(crate) fn followed(landmark: &Landmark, gain: f32, noise_variance: [f32; 3]) -> Self {
-        Self::new(landmark, gain, FOLLOWED_GAIN, noise_variance)
+    /// For an object that was last seen under `light`.
+    pub(crate) fn followed(landmark: &Landmark, light: Light, noise_variance: [f32; 3]) -> Self {
+        Self::new(landmark, light, FOLLOWED_GAIN, noise_variance)
     }
 
-    fn new(landmark: &Landmark, gain: f32, factor: f32, noise_variance: [f32; 3]) -> Self {
+    fn new(landmark: &Landmark, light: Light, factor: f32, noise_variance: [f32; 3]) -> Self {
+        let far = face::far_view(landmark);
+        let gain = light.gain;
+        let haze = light.haze.signum() * (light.haze.abs() - COVERED_HAZE).max(0.0);
         let cone = |shade: &ColorStats| {
-            let norm2 = shade.mean.iter().map(|m| m * m).sum::<f32>().max(25.0);
+            let mean = shade.mean.map(|m| (m + haze).clamp(0.0, 255.0));
+            let norm2 = mean.iter().map(|m| m * m).sum::<f32>().max(25.0);
             let tolerance = |c: usize| {
                 let spread = 2.5 * (shade.variance[c].min(400.0) + noise_variance[c]).sqrt();
                 landmark.tolerance.mean[c].max(spread).clamp(TOLERANCE.0, TOLERANCE.1)
             };
             Cone {
-                shade: shade.mean,
+                shade: mean,
+                haze,
                 tolerance: std::array::from_fn(tolerance),
-                widening: WIDENING * shade.mean.iter().copied().fold(0.0, f32::max),
-                onto_shade: shade.mean.map(|m| m / norm2),
+                widening: WIDENING * mean.iter().copied().fold(0.0, f32::max),
+                onto_shade: mean.map(|m| m / norm2),
                 gain: (gain / factor, gain * factor),
             }
         };
-        let far = face::far_view(landmark);
         let plain =
             landmark.shades.iter().enumerate().filter(|(at, _)| Some(*at) != far).map(|(_, shade)| shade);
         let cones: Vec<Cone> = plain.map(cone).collect();
@@ -195,6 +222,13 @@ impl Likeness {
         self.gain_range >= FULL_SEARCH_GAIN
     }
 
+    /// White that a colour has more than the descriptor's nearest shade, levels.
+    pub(crate) fn haze(&self, color: [f32; 3]) -> f32 {
+        let excess = |cone: &Cone| cone.compare(color).excess;
+        let nearest = self.cones.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)));
+        nearest.map_or(0.0, |cone| cone.haze_of(color))
+    }
+
     /// The comparison with the nearest shade.
     pub(crate) fn nearest(&self, color: [f32; 3]) -> Match {
         let nothing = Match { gain: 1.0, excess: f32::MAX };
@@ -212,6 +246,17 @@ impl Cone {
         let wider = self.widening * (gain - 1.0).abs();
         let off = |c: usize| (color[c] - gain * self.shade[c]).abs() / (self.tolerance[c] + wider);
         Match { gain, excess: off(0).max(off(1)).max(off(2)) }
+    }
+
+    /// White that a colour has more than the descriptor's shade, levels: by least squares along what of white is not the
+    /// shade itself, with a prior of none. Of a shade near grey the two cannot be told apart.
+    fn haze_of(&self, color: [f32; 3]) -> f32 {
+        let gain = self.gain_of(color);
+        let grey = dot(self.onto_shade, [1.0; 3]);
+        let white = minus([1.0; 3], self.shade.map(|level| grey * level));
+        let rest = minus(color, self.shade.map(|level| gain * level));
+        let apart = dot(white, white);
+        (self.haze * apart + dot(rest, white) / gain) / (apart + HAZE_PRIOR)
     }
 
     fn is_lit_face(&self, color: [f32; 3]) -> bool {

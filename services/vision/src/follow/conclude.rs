@@ -152,7 +152,7 @@ fn advance(
         }
         None => {
             track.misses = track.misses.saturating_add(1);
-            let likeness = Likeness::followed(landmark, track.gain, scene.noise_variance);
+            let likeness = Likeness::followed(landmark, track.light(), scene.noise_variance);
             let miss = reason::of_miss(scene, track, &likeness, &prediction, &gate, elsewhere);
             report::missed(landmark, track.instance, miss)
         }
@@ -173,7 +173,7 @@ fn begin(
     sighting: Sighting,
 ) -> LandmarkOutcome {
     let predictor = Predictor::new(scene.options.prediction, fix(scene, found));
-    let instance = state.begin(predictor, found.gain, found.score).instance;
+    let instance = state.begin(predictor, found.light, found.score).instance;
     LandmarkOutcome {
         adaptation: Some(adaptation(scene, found, true)),
         ..report::measured(landmark, instance, sighting)
@@ -214,7 +214,8 @@ fn describe(
 
 fn adaptation(scene: &Scene<'_>, found: &Candidate, full_frame: bool) -> Adaptation {
     Adaptation {
-        gain: found.gain,
+        gain: found.light.gain,
+        haze: found.light.haze,
         noise_variance: scene.noise_variance,
         window_px: found.window_px,
         tolerance_scale: found.tolerance_scale,

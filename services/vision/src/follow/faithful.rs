@@ -4,6 +4,7 @@
 use super::Scene;
 use super::report::{self, Ids};
 use super::state::{LandmarkState, Track};
+use crate::adaptive::Light;
 use crate::gate::search_gate;
 use crate::landmark::Landmark;
 use crate::outcome::{LandmarkOutcome, Miss, Prediction, Sighting};
@@ -90,7 +91,7 @@ fn begin(
     ids: &mut Ids,
 ) -> LandmarkOutcome {
     let predictor = Predictor::new(scene.options.prediction, fix(scene, &sighting));
-    let track = state.begin(predictor, 1.0, sighting.score);
+    let track = state.begin(predictor, Light::AS_LEARNED, sighting.score);
     report::measured_by(ids, landmark, track.instance, sighting)
 }
 

@@ -121,12 +121,12 @@ fn in_gate(
     if budget.spend(u64::from(region.width) * u64::from(region.height)).is_none() {
         return pursuit;
     }
-    let likeness = Likeness::followed(landmark, track.gain, scene.noise_variance);
+    let likeness = Likeness::followed(landmark, track.light(), scene.noise_variance);
     let mut seen = finder.candidates(&scene.search(
         landmark,
         region,
         &likeness,
-        track.gain,
+        track.light(),
         seeds(landmark, &likeness).0,
     ));
     let taken = |candidate: &Candidate| {
@@ -188,9 +188,9 @@ fn anywhere(
     let region = RectPx::whole(scene.frame.size());
     budget.spend(u64::from(region.width) * u64::from(region.height))?;
     state.frames_since_search = 0;
-    let gain = state.tracks.first().map_or(1.0, |track| track.gain);
-    let likeness = Likeness::anywhere(landmark, gain, scene.noise_variance);
-    Some(finder.candidates(&scene.search(landmark, region, &likeness, gain, seeds(landmark, &likeness).1)))
+    let light = state.light();
+    let likeness = Likeness::anywhere(landmark, light, scene.noise_variance);
+    Some(finder.candidates(&scene.search(landmark, region, &likeness, light, seeds(landmark, &likeness).1)))
 }
 
 /// Takes up a lost object where the whole frame shows one that can be it: far away only where no other one was ever seen

@@ -1,12 +1,16 @@
 //! All that the outcome of later frames depends on: plain data.
 
 use super::FrameStamp;
-use crate::adaptive::Candidate;
+use crate::adaptive::{Candidate, Light};
 use crate::landmark::{Digest, Landmark};
 use crate::predict::{Fix, Predictor};
 
 /// How fast gain and score are followed.
 const FOLLOW_RATE: f32 = 0.2;
+/// and haze, which changes when a camera sets its contrast anew.
+const HAZE_RATE: f32 = 0.4;
+/// No more haze than this is believed, levels.
+const MOST_HAZE: f32 = 60.0;
 
 /// The state of a [`Follow`](super::Follow) between two frames.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -45,6 +49,8 @@ pub struct Track {
     pub predictor: Predictor,
     /// Brightness over the descriptor's, followed.
     pub gain: f32,
+    /// White that haze, gloss or the camera adds to the descriptor's colours, levels, followed.
+    pub haze: f32,
     /// Score, followed.
     pub score: f32,
     /// Its area when it was last seen whole, px².
@@ -70,25 +76,43 @@ impl LandmarkState {
     pub fn new(landmark: &Landmark) -> Self {
         Self { id: landmark.id.clone(), digest: landmark.digest, ..Self::default() }
     }
+
+    /// The light in which further objects are looked for: that on the one seen last, of several the one known best.
+    pub(super) fn light(&self) -> Light {
+        let last = self.tracks.iter().min_by_key(|track| (track.misses, std::cmp::Reverse(track.sightings)));
+        last.map_or(Light::AS_LEARNED, Track::light)
+    }
+
     /// A new object, seen for the first time.
-    pub(super) fn begin(&mut self, predictor: Predictor, gain: f32, score: f32) -> &Track {
+    pub(super) fn begin(&mut self, predictor: Predictor, light: Light, score: f32) -> &Track {
         let instance = self.next_instance;
         self.next_instance += 1;
         let whole_area_px2 = predictor.fixes.first().map_or(0.0, |fix| fix.area_px2);
         let (sightings, misses) = (1, 0);
-        self.tracks.push(Track { instance, predictor, gain, score, whole_area_px2, sightings, misses });
+        let (gain, haze) = (light.gain, bounded(light.haze));
+        self.tracks.push(Track { instance, predictor, gain, haze, score, whole_area_px2, sightings, misses });
         &self.tracks[self.tracks.len() - 1]
     }
 }
 
+fn bounded(haze: f32) -> f32 {
+    haze.clamp(-MOST_HAZE, MOST_HAZE)
+}
+
 impl Track {
+    /// What is known of the light on it.
+    pub(super) fn light(&self) -> Light {
+        Light { gain: self.gain, haze: self.haze }
+    }
+
     /// Takes a sighting into account.
     pub(super) fn follow(&mut self, found: &Candidate, fix: Fix, motion: Motion) {
         self.misses = 0;
         self.sightings = self.sightings.saturating_add(1);
         // What the picture's border or something else cuts tells little of how the whole object looks.
         if !found.cut {
-            self.gain += FOLLOW_RATE * (found.gain - self.gain);
+            self.gain += FOLLOW_RATE * (found.light.gain - self.gain);
+            self.haze = bounded(self.haze + HAZE_RATE * (found.light.haze - self.haze));
             self.score += FOLLOW_RATE * (found.score - self.score);
         }
         if !found.cut || found.area_px2 > self.whole_area_px2 {

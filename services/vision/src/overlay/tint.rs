@@ -32,7 +32,9 @@ pub fn tint(frame: &mut Frame, landmarks: &[Landmark]) {
 #[must_use]
 pub fn adapted(landmark: &Landmark, adaptation: &Adaptation) -> Landmark {
     let shade = |shade: &ColorStats| ColorStats {
-        mean: shade.mean.map(|mean| (mean * adaptation.gain).min(255.0)),
+        mean: shade
+            .mean
+            .map(|mean| ((mean + adaptation.haze).clamp(0.0, 255.0) * adaptation.gain).min(255.0)),
         variance: std::array::from_fn(|c| {
             shade.variance[c] * adaptation.gain * adaptation.gain + adaptation.noise_variance[c]
         }),
@@ -123,6 +125,7 @@ mod tests {
         };
         let adaptation = Adaptation {
             gain: 0.5,
+            haze: 0.0,
             noise_variance: [0.0; 3],
             window_px: 8,
             tolerance_scale: 1.0,
@@ -130,6 +133,7 @@ mod tests {
         };
         assert!(!tinted(&red()));
         assert!(tinted(&adapted(&red(), &adaptation)));
+        assert!(!tinted(&adapted(&red(), &Adaptation { haze: 60.0, ..adaptation })));
     }
 
     #[test]

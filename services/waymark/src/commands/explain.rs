@@ -80,12 +80,13 @@ fn described(landmark: &Landmark, explanation: &Explanation) -> String {
 }
 
 fn adapted(adaptation: &Adaptation) -> String {
-    let Adaptation { gain, noise_variance: [red, green, blue], window_px, tolerance_scale, full_frame } =
+    let Adaptation { gain, haze, noise_variance: [red, green, blue], window_px, tolerance_scale, full_frame } =
         *adaptation;
     let mut table = Columns::new(["what", "value", "meaning"]);
     let searched = if full_frame { "whole frame" } else { "gate" };
     for row in [
         ["gain", &format!("{gain:.2}"), "brightness over the descriptor's"],
+        ["haze", &format!("{haze:+.1}"), "white added to the descriptor's colours, levels"],
         ["noise", &format!("{red:.1} {green:.1} {blue:.1}"), "variance of the camera, levels², taken out"],
         ["window", &format!("{window_px}"), "samples on a side, of the doubled grid"],
         ["tolerance", &format!("{tolerance_scale:.2}"), "times the descriptor's for means"],

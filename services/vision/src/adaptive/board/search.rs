@@ -3,6 +3,7 @@
 use super::Board;
 use super::shares::Shares;
 use crate::adaptive::candidate::{Candidate, LEAST_SEED_PX, Search};
+use crate::adaptive::likeness;
 use crate::adaptive::mixture::{Mixtures, TwoColours};
 use crate::adaptive::patch::Patch;
 use crate::adaptive::{soft_edge, window};
@@ -53,7 +54,7 @@ pub(in crate::adaptive) fn find(
             break;
         }
         let colours = face.colours();
-        let mixtures = colours.under(gain * search.gain, search.noise_variance);
+        let mixtures = colours.under(gain * search.light.gain, search.noise_variance);
         let light = Light { search, colours, mixtures: &mixtures };
         mark(search, like, &mixtures, belonging);
         found.extend(light.boards(belonging, components));
@@ -170,7 +171,7 @@ impl Light<'_> {
         Some(Candidate {
             centroid,
             area_px2,
-            gain,
+            light: likeness::Light { gain, haze: 0.0 },
             observed,
             window_px,
             tolerance_scale: search.likeness.tolerance_scale(search.landmark, gain),

@@ -1,6 +1,6 @@
 //! Signs that overlap, stand behind posts and before bushes, in drawn frames.
 
-use crate::adaptive::{Candidate, Finder, Likeness, Search};
+use crate::adaptive::{Candidate, Finder, Light, Likeness, Search};
 use crate::frame::Frame;
 use crate::geometry::{PointPx, RectPx};
 use crate::landmark::{Landmark, ShapeClass};
@@ -71,13 +71,13 @@ fn learned() -> Landmark {
 /// What is found anywhere, with at least the score that one more sign needs.
 fn found(frame: &Frame) -> Vec<Candidate> {
     let landmark = learned();
-    let likeness = Likeness::anywhere(&landmark, 1.0, [1.0; 3]);
+    let likeness = Likeness::anywhere(&landmark, Light::AS_LEARNED, [1.0; 3]);
     let mut all = Finder::default().candidates(&Search {
         frame,
         region: RectPx::whole(frame.size()),
         landmark: &landmark,
         likeness: &likeness,
-        gain: 1.0,
+        light: Light::AS_LEARNED,
         noise_variance: [1.0; 3],
         blur_px: 0.5,
         limit: 24,
@@ -138,5 +138,5 @@ fn a_sign_is_measured_with_its_border() {
     let [sign] = &found[..] else { panic!("{} signs", found.len()) };
     assert!(sign.centroid.distance_px(PointPx::new(120.3, 60.4)) < 0.3, "{:?}", sign.centroid);
     assert!((sign.area_px2 / 1800.0 - 1.0).abs() < 0.08, "{} px²", sign.area_px2);
-    assert!((sign.gain - 1.0).abs() < 0.1, "gain {}", sign.gain);
+    assert!((sign.light.gain - 1.0).abs() < 0.1, "gain {}", sign.light.gain);
 }
