@@ -77,10 +77,9 @@ impl LandmarkState {
         Self { id: landmark.id.clone(), digest: landmark.digest, ..Self::default() }
     }
 
-    /// The light in which further objects are looked for: that on the one seen last, of several the one known best.
+    /// The light in which the whole frame is searched: that on the object known longest.
     pub(super) fn light(&self) -> Light {
-        let last = self.tracks.iter().min_by_key(|track| (track.misses, std::cmp::Reverse(track.sightings)));
-        last.map_or(Light::AS_LEARNED, Track::light)
+        self.tracks.first().map_or(Light::AS_LEARNED, Track::light)
     }
 
     /// A new object, seen for the first time.
