@@ -111,12 +111,12 @@ impl AcceptedSet {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use vision::{ColorStats, Digest, ShapeClass, WindowPx};
     use waymark_proto::digest;
 
-    fn landmark(id: &str, revision: u64, red: f32) -> Landmark {
+    pub(crate) fn landmark(id: &str, revision: u64, red: f32) -> Landmark {
         let mut landmark = Landmark {
             id: id.to_owned(),
             revision,

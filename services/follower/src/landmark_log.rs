@@ -142,26 +142,11 @@ fn latch_key(landmark: &str) -> LatchKey {
 mod tests {
     use ingest::recorded::{RecordedItem, RecordedItems};
     use recording::{Command, JournalOptions};
-    use vision::{ColorStats, SetVersion, ShapeClass, WindowPx};
-    use waymark_proto::digest::landmark_digest;
+    use vision::SetVersion;
     use waymark_proto::keys::VehicleKeys;
 
     use super::*;
-
-    fn landmark(id: &str, red: f32) -> Arc<Landmark> {
-        let mut landmark = Landmark {
-            id: id.to_owned(),
-            revision: 1,
-            window_px: WindowPx::square(12),
-            shades: vec![ColorStats::uniform(red, 20.0)],
-            tolerance: ColorStats::uniform(15.0, 50.0),
-            shape: ShapeClass::Block,
-            size_m: None,
-            digest: Digest::default(),
-        };
-        landmark.digest = landmark_digest(&landmark);
-        Arc::new(landmark)
-    }
+    use crate::accepted::tests::landmark;
 
     fn set(version: u64, landmarks: &[&Arc<Landmark>]) -> Arc<LandmarkSet> {
         let landmarks = landmarks.iter().map(|landmark| Arc::clone(landmark)).collect();
@@ -174,7 +159,7 @@ mod tests {
         let journal = Arc::new(Journal::start(JournalOptions::new(directory.path(), "car")).unwrap());
         let keys = |vehicle| VehicleKeys::new("convoy", vehicle).unwrap();
         let topics = VehicleTopics::new(&keys("car"), &keys("lead"));
-        let (blue, red) = (landmark("blue", 40.0), landmark("red", 200.0));
+        let (blue, red) = (Arc::new(landmark("blue", 1, 40.0)), Arc::new(landmark("red", 1, 200.0)));
         let (first, second) = (set(1, &[&blue, &red]), set(2, &[&blue]));
         let (leader, accepted) = watch::channel(Arc::clone(&first));
         let log = LandmarkLog::begin(Arc::clone(&journal), topics, &first);

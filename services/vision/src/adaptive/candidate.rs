@@ -308,10 +308,8 @@ fn haze(search: &Search<'_>, object: &Patch) -> f32 {
     if search.likeness.face().is_some() {
         return 0.0;
     }
-    let step = (object.count() / HAZE_SAMPLES).max(1);
     let (mut n, mut sum) = (0.0_f32, 0.0_f32);
-    for (x, y) in object.set_places().step_by(step | 1) {
-        let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
+    for pixel in segment::sampled(search.frame, object, HAZE_SAMPLES) {
         if search.likeness.matches(pixel) {
             sum += search.likeness.haze(pixel.map(f32::from));
             n += 1.0;

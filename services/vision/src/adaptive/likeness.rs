@@ -224,19 +224,18 @@ impl Likeness {
 
     /// White that a colour has more than the descriptor's nearest shade, levels.
     pub(crate) fn haze(&self, color: [f32; 3]) -> f32 {
-        let excess = |cone: &Cone| cone.compare(color).excess;
-        let nearest = self.cones.iter().min_by(|a, b| excess(a).total_cmp(&excess(b)));
-        nearest.map_or(0.0, |cone| cone.haze_of(color))
+        self.nearest_cone(color).map_or(0.0, |(cone, _)| cone.haze_of(color))
     }
 
     /// The comparison with the nearest shade.
     pub(crate) fn nearest(&self, color: [f32; 3]) -> Match {
         let nothing = Match { gain: 1.0, excess: f32::MAX };
-        self.cones
-            .iter()
-            .map(|cone| cone.compare(color))
-            .min_by(|a, b| a.excess.total_cmp(&b.excess))
-            .unwrap_or(nothing)
+        self.nearest_cone(color).map_or(nothing, |(_, compared)| compared)
+    }
+
+    fn nearest_cone(&self, color: [f32; 3]) -> Option<(&Cone, Match)> {
+        let compared = self.cones.iter().map(|cone| (cone, cone.compare(color)));
+        compared.min_by(|(_, a), (_, b)| a.excess.total_cmp(&b.excess))
     }
 }
 

@@ -108,7 +108,7 @@ pub(crate) fn surroundings(bounds: RectPx, frame: &Frame) -> RectPx {
 fn object_colours(frame: &Frame, seed: &Patch) -> Vec<Cluster> {
     let core = seed.eroded(1);
     let core = if 3 * core.count() >= seed.count() { &core } else { seed };
-    let mut colours = palette(sampled(frame, core), RADIUS, OBJECT_COLOURS);
+    let mut colours = palette(sampled(frame, core, PALETTE_SAMPLES), RADIUS, OBJECT_COLOURS);
     let all: u32 = colours.iter().map(|cluster| cluster.pixels).sum();
     colours.retain(|cluster| 25 * cluster.pixels >= all);
     colours
@@ -123,12 +123,16 @@ fn background_colours(frame: &Frame, seed: &Patch, near: &Patch, likeness: &Like
     let clear = ring.without(&lit.dilated(2));
     // A sign has one face, and lettering of any colour.
     let ring = if likeness.face().is_none() && 3 * clear.count() >= ring.count() { clear } else { ring };
-    palette(sampled(frame, &ring).filter(foreign), RADIUS, BACKGROUND_COLOURS)
+    palette(sampled(frame, &ring, PALETTE_SAMPLES).filter(foreign), RADIUS, BACKGROUND_COLOURS)
 }
 
-/// Pixels of a patch, evenly thinned out where there are many.
-fn sampled<'a>(frame: &'a Frame, patch: &'a Patch) -> impl Iterator<Item = [u8; 3]> + 'a {
-    let step = (patch.count() / PALETTE_SAMPLES).max(1);
+/// Pixels of a patch, evenly thinned out to about `samples` where there are many.
+pub(super) fn sampled<'a>(
+    frame: &'a Frame,
+    patch: &'a Patch,
+    samples: usize,
+) -> impl Iterator<Item = [u8; 3]> + 'a {
+    let step = (patch.count() / samples).max(1);
     // An odd step does not fall into line with the rows of even patches.
     let places = patch.set_places().step_by(step | 1);
     places.map(|(x, y)| frame.pixel(patch.rect.x + x as u32, patch.rect.y + y as u32))

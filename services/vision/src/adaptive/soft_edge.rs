@@ -40,19 +40,9 @@ pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch, edge: Edge) -> Op
     let outer = object.dilated(width_px);
     let background = outer.dilated(1).inverted();
     let pure = Pure { frame, object, inside: &inside, background: &background };
-    let (mut weight, mut mx, mut my) = (0.0_f64, 0.0_f64, 0.0_f64);
-    let mut add = |x: i32, y: i32, share: f64| {
-        weight += share;
-        mx += share * (f64::from(x) + 0.5);
-        my += share * (f64::from(y) + 0.5);
-    };
-    inner.set_places().for_each(|(x, y)| add(x, y, 1.0));
-    outer
-        .without(&inner)
-        .set_places()
-        .for_each(|(x, y)| add(x, y, f64::from(pure.covered_share((x, y), edge))));
-    let (x, y) = (f64::from(object.rect.x) + mx / weight, f64::from(object.rect.y) + my / weight);
-    (weight > 0.0).then(|| (PointPx::new(x as f32, y as f32), weight as f32))
+    let mut moments = Moments::of(&inner);
+    outer.without(&inner).set_places().for_each(|place| moments.add(place, pure.covered_share(place, edge)));
+    moments.centre_in(object).map(|centre| (centre, moments.weight as f32))
 }
 
 /// Centre of gravity and area of a board with a border all around, of which the object is all but the border; `None` of
@@ -68,27 +58,50 @@ pub(crate) fn within_border(
     let outer = object.dilated(width_px);
     let background = outer.dilated(1).inverted();
     let pure = Pure { frame, object, inside: &inner, background: &background };
-    let (mut weight, mut mx, mut my) = (0.0_f64, 0.0_f64, 0.0_f64);
-    let mut add = |x: i32, y: i32, share: f64| {
-        weight += share;
-        mx += share * (f64::from(x) + 0.5);
-        my += share * (f64::from(y) + 0.5);
-    };
-    inner.set_places().for_each(|(x, y)| add(x, y, 1.0));
+    let mut moments = Moments::of(&inner);
     let rim = object.dilated(1).without(object);
     let (mut seen, mut length) = (0.0_f32, 0.0_f32);
     for (x, y) in outer.without(&inner).set_places() {
         let (own, border) = pure.shares_with_border((x, y), own, border);
-        add(x, y, f64::from(own));
+        moments.add((x, y), own);
         if let Some(border) = border {
             seen += border;
             length += if rim.get(x, y) { 1.0 } else { 0.0 };
         }
     }
     let width_px = if length > 0.0 { (seen / length).min(width_px as f32) } else { 0.0 };
-    let (x, y) = (f64::from(object.rect.x) + mx / weight, f64::from(object.rect.y) + my / weight);
-    let area_px2 = weight as f32 + width_px * rim.count() as f32;
-    (weight > 0.0).then(|| (PointPx::new(x as f32, y as f32), area_px2))
+    let area_px2 = moments.weight as f32 + width_px * rim.count() as f32;
+    moments.centre_in(object).map(|centre| (centre, area_px2))
+}
+
+/// Zeroth and first moments of pixels that count by a part, in the frame of a patch.
+struct Moments {
+    weight: f64,
+    x: f64,
+    y: f64,
+}
+
+impl Moments {
+    /// Of pixels that count wholly.
+    fn of(pixels: &Patch) -> Self {
+        let mut moments = Self { weight: 0.0, x: 0.0, y: 0.0 };
+        pixels.set_places().for_each(|place| moments.add(place, 1.0));
+        moments
+    }
+
+    fn add(&mut self, (x, y): (i32, i32), share: f32) {
+        let share = f64::from(share);
+        self.weight += share;
+        self.x += share * (f64::from(x) + 0.5);
+        self.y += share * (f64::from(y) + 0.5);
+    }
+
+    /// Centre of gravity in frame pixels, of pixels of `patch`; `None` of nothing.
+    fn centre_in(&self, patch: &Patch) -> Option<PointPx> {
+        let (x, y) =
+            (f64::from(patch.rect.x) + self.x / self.weight, f64::from(patch.rect.y) + self.y / self.weight);
+        (self.weight > 0.0).then(|| PointPx::new(x as f32, y as f32))
+    }
 }
 
 /// Where only the object and where only the background shows.

@@ -3,7 +3,7 @@
 use super::Board;
 use super::shares::Shares;
 use crate::adaptive::candidate::{Candidate, LEAST_SEED_PX, Search};
-use crate::adaptive::likeness;
+use crate::adaptive::likeness::Light;
 use crate::adaptive::mixture::{Mixtures, TwoColours};
 use crate::adaptive::patch::Patch;
 use crate::adaptive::{soft_edge, window};
@@ -31,9 +31,9 @@ const WIDEST_BORDER_PX: f32 = 4.0;
 /// A candidate and its box.
 type Found = (RectPx, Candidate);
 
-/// One light under which signs are looked for.
+/// The search under one light.
 #[derive(Clone, Copy)]
-struct Light<'a> {
+struct Pass<'a> {
     search: &'a Search<'a>,
     colours: &'a TwoColours,
     mixtures: &'a Mixtures,
@@ -47,17 +47,17 @@ pub(in crate::adaptive) fn find(
     components: &mut Components,
 ) -> Vec<Candidate> {
     let Some(face) = search.likeness.face() else { return Vec::new() };
+    let colours = face.colours();
     let gains = if search.likeness.is_light_unknown() { &GAINS[..] } else { &GAINS[..1] };
     let mut found: Vec<Found> = Vec::new();
     for (tried, gain) in gains.iter().enumerate() {
         if tried >= LIKELY_GAINS && found.iter().any(|(_, candidate)| candidate.score >= CLEAR_SCORE) {
             break;
         }
-        let colours = face.colours();
         let mixtures = colours.under(gain * search.light.gain, search.noise_variance);
-        let light = Light { search, colours, mixtures: &mixtures };
+        let pass = Pass { search, colours, mixtures: &mixtures };
         mark(search, like, &mixtures, belonging);
-        found.extend(light.boards(belonging, components));
+        found.extend(pass.boards(belonging, components));
     }
     found.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
     let mut kept: Vec<Found> = Vec::new();
@@ -94,7 +94,7 @@ fn is_same(a: RectPx, b: RectPx) -> bool {
     both as f32 >= SAME * (a.width * a.height).min(b.width * b.height) as f32
 }
 
-impl Light<'_> {
+impl Pass<'_> {
     /// The boxes among the pixels that belong to signs.
     fn boards(&self, belonging: &mut BitMask, components: &mut Components) -> Vec<Found> {
         let (mut known, mut found): (Vec<RectPx>, Vec<Found>) = (Vec::new(), Vec::new());
@@ -171,7 +171,7 @@ impl Light<'_> {
         Some(Candidate {
             centroid,
             area_px2,
-            light: likeness::Light { gain, haze: 0.0 },
+            light: Light { gain, haze: 0.0 },
             observed,
             window_px,
             tolerance_scale: search.likeness.tolerance_scale(search.landmark, gain),
