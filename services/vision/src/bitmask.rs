@@ -138,24 +138,13 @@ impl BitMask {
     /// # Panics
     /// When one lies outside the picture.
     pub fn set_run(&mut self, y: u32, x_start: u32, x_end: u32) {
-        let mut x = x_start;
-        while x < x_end {
-            let stop = (x / 64 * 64 + 64).min(x_end);
-            let bits = (u64::MAX >> (64 - (stop - x))) << (x % 64);
-            self.or_word(y, x / 64, bits);
-            x = stop;
-        }
+        words_of_run(x_start, x_end).for_each(|(word, bits)| self.or_word(y, word, bits));
     }
 
     /// Clears the pixels `x_start..x_end` of row `y`.
     pub(crate) fn clear_run(&mut self, y: u32, x_start: u32, x_end: u32) {
-        let mut x = x_start;
-        while x < x_end {
-            let stop = (x / 64 * 64 + 64).min(x_end);
-            let bits = (u64::MAX >> (64 - (stop - x))) << (x % 64);
-            self.words[y as usize * self.words_per_row + x as usize / 64] &= !bits;
-            x = stop;
-        }
+        let row = &mut self.words[y as usize * self.words_per_row..][..self.words_per_row];
+        words_of_run(x_start, x_end).for_each(|(word, bits)| row[word as usize] &= !bits);
     }
 
     /// Sets those of the 64 pixels of word `word` (columns from `64 * word`) whose bit is set in `bits`.
@@ -202,25 +191,13 @@ impl BitMask {
     /// # Panics
     /// When `y` is not below the height.
     pub fn append_runs(&self, y: u32, runs: &mut Vec<Run>) {
+        self.each_run(y, |run| runs.push(run));
+    }
+
+    /// Gives each run of row `y`, from the left.
+    pub(crate) fn each_run(&self, y: u32, each: impl FnMut(Run)) {
         let (first, words) = self.touched_words(y);
-        let mut open: Option<u32> = None;
-        for (&word, base) in words.iter().zip((64 * first..).step_by(64)) {
-            let mut at = 0;
-            while at < 64 {
-                let rest = (if open.is_some() { !word } else { word }) >> at;
-                if rest == 0 {
-                    break;
-                }
-                at += rest.trailing_zeros();
-                match open.take() {
-                    None => open = Some(base + at),
-                    Some(x_start) => runs.push(Run { y, x_start, x_end: base + at }),
-                }
-            }
-        }
-        if let Some(x_start) = open {
-            runs.push(Run { y, x_start, x_end: (64 * (first + words.len() as u32)).min(self.width) });
-        }
+        each_run(y, (first, words), self.width, each);
     }
 
     /// The number of the first word that may hold set bits, and the words from there that may.
@@ -230,6 +207,43 @@ impl BitMask {
             return (0, &[]);
         }
         (first, &self.row_words(y)[first as usize..end as usize])
+    }
+}
+
+/// The words that hold the columns `x_start..x_end` of a row, each with the bits of those.
+pub(crate) fn words_of_run(x_start: u32, x_end: u32) -> impl Iterator<Item = (u32, u64)> {
+    let mut x = x_start;
+    std::iter::from_fn(move || {
+        (x < x_end).then(|| {
+            let stop = (x / 64 * 64 + 64).min(x_end);
+            let bits = (u64::MAX >> (64 - (stop - x))) << (x % 64);
+            let word = x / 64;
+            x = stop;
+            (word, bits)
+        })
+    })
+}
+
+/// Gives each run of row `y` of a picture of that width, from the left: of the row's words from number `first` on.
+#[inline]
+pub(crate) fn each_run(y: u32, (first, words): (u32, &[u64]), width: u32, mut each: impl FnMut(Run)) {
+    let mut open: Option<u32> = None;
+    for (&word, base) in words.iter().zip((64 * first..).step_by(64)) {
+        let mut at = 0;
+        while at < 64 {
+            let rest = (if open.is_some() { !word } else { word }) >> at;
+            if rest == 0 {
+                break;
+            }
+            at += rest.trailing_zeros();
+            match open.take() {
+                None => open = Some(base + at),
+                Some(x_start) => each(Run { y, x_start, x_end: base + at }),
+            }
+        }
+    }
+    if let Some(x_start) = open {
+        each(Run { y, x_start, x_end: (64 * (first + words.len() as u32)).min(width) });
     }
 }
 
