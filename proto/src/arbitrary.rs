@@ -7,7 +7,7 @@ use proptest::option;
 use proptest::prelude::*;
 use vision::follow::{FollowOptions, FollowState, FrameStamp, LandmarkState, Mode, Track};
 use vision::outcome::{Adaptation, NearestMatch, Statistic};
-use vision::predict::{Axis, Fix, Kalman, PredictionMethod, Predictor};
+use vision::predict::{Axis, Fix, Fixes, Kalman, PredictionMethod, Predictor};
 use vision::register::ShapeVeto;
 use vision::{
     ColorStats, Digest, Gate, Landmark, LandmarkOutcome, LandmarkSet, Miss, Outcome, PointPx, Prediction,
@@ -199,8 +199,8 @@ fn predictors() -> impl Strategy<Value = Predictor> {
         (any::<i64>(), axes(), axes(), axes(), 1.0..400.0).prop_map(|(nanos, x, y, log_area, unrest)| {
             Kalman { fixed_at: Timestamp::from_nanos(nanos), x, y, log_area, unrest }
         });
-    (prop::sample::select(PredictionMethod::ALL.to_vec()), kalman, vec(fixes, 0..=3))
-        .prop_map(|(method, kalman, fixes)| Predictor { method, kalman, fixes })
+    (prop::sample::select(PredictionMethod::ALL.to_vec()), kalman, vec(fixes, 0..=Fixes::MOST))
+        .prop_map(|(method, kalman, fixes)| Predictor { method, kalman, fixes: fixes.into_iter().collect() })
 }
 
 fn tracks() -> impl Strategy<Value = Track> {

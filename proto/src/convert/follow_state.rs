@@ -3,7 +3,7 @@
 use std::fmt;
 
 use vision::follow::{FollowOptions, FollowState, FrameStamp, LandmarkState, Mode, Track};
-use vision::predict::{Axis, Fix, Kalman, PredictionMethod, Predictor};
+use vision::predict::{Axis, Fix, Fixes, Kalman, PredictionMethod, Predictor};
 use vision::register::ShapeVeto;
 use vision::{PointPx, Timestamp};
 
@@ -15,7 +15,7 @@ use crate::keys::Id;
 use crate::v1;
 
 /// Fixes that a predictor remembers.
-const MAX_FIXES: u64 = 3;
+const MAX_FIXES: u64 = Fixes::MOST as u64;
 
 /// What a message about a camera's state says.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,8 +4,10 @@
 //! `Printed` reproduces it for comparison, `ConstantVelocity` is what the text describes. The covariance is the
 //! Kalman filter's whichever method places the centre, so a gate can be drawn around each of them.
 
+mod fixes;
 mod kalman;
 
+pub use fixes::Fixes;
 pub use kalman::{Axis, Kalman};
 
 use crate::geometry::PointPx;
@@ -71,15 +73,15 @@ pub struct Predictor {
     pub method: PredictionMethod,
     /// The filter, at the time of the last fix.
     pub kalman: Kalman,
-    /// The last fixes, newest first, at most three.
-    pub fixes: Vec<Fix>,
+    /// The last fixes, newest first.
+    pub fixes: Fixes,
 }
 
 impl Predictor {
     /// A record that begins with `fix`.
     #[must_use]
     pub fn new(method: PredictionMethod, fix: Fix) -> Self {
-        Self { method, kalman: Kalman::new(fix), fixes: vec![fix] }
+        Self { method, kalman: Kalman::new(fix), fixes: Fixes::from_iter([fix]) }
     }
 
     /// The prior for a frame captured at `at`.
@@ -100,7 +102,7 @@ impl Predictor {
             }
         };
         let here = Prediction { centroid: last.centroid, area_px2: last.area_px2, ..prior };
-        match (self.method, self.fixes.as_slice()) {
+        match (self.method, &*self.fixes) {
             (PredictionMethod::Kalman, _) => prior,
             (PredictionMethod::ConstantVelocity, [newer, older, ..]) => {
                 let apart_s = interval_s(older.captured_at, newer.captured_at);
@@ -117,8 +119,7 @@ impl Predictor {
             return;
         }
         self.kalman.update(fix);
-        self.fixes.insert(0, fix);
-        self.fixes.truncate(3);
+        self.fixes.push_newest(fix);
     }
 }
 
