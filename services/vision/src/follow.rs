@@ -16,6 +16,7 @@ pub use state::{FollowState, LandmarkState, Track};
 use std::fmt;
 use std::sync::Arc;
 
+use crate::adaptive::memory::Memory;
 use crate::adaptive::{Finder, Light, Likeness, Search, Tracer, noise, sharpness};
 use crate::frame::Frame;
 use crate::geometry::RectPx;
@@ -26,8 +27,7 @@ use crate::probe::StageProbe;
 use crate::register::{Request, ShapeVeto, Workspace, register_all};
 use crate::timestamp::Timestamp;
 use budget::Budget;
-use faithful::Found;
-use report::Ids;
+use report::{Ids, Report};
 
 /// How a landmark is registered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -102,7 +102,7 @@ impl<'a> Scene<'a> {
         &self,
         landmark: &'a Landmark,
         region: RectPx,
-        likeness: &'a Likeness,
+        likeness: Likeness<'a>,
         light: Light,
         seeds: usize,
     ) -> Search<'a> {
@@ -139,6 +139,8 @@ struct Lists {
 struct Tools {
     finder: Finder,
     tracer: Tracer,
+    /// What lasts for one landmark's turn in a frame.
+    memory: Memory,
 }
 
 impl fmt::Debug for Follow {
@@ -227,7 +229,8 @@ impl Follow {
         }
     }
 
-    /// Takes back an outcome that nobody needs any more: in `faithful` mode the next frame then asks for no memory.
+    /// Takes back an outcome that nobody needs any more. Where every outcome comes back, frames ask for no memory once as
+    /// much is there as the busiest of them took.
     pub fn recycle(&mut self, outcome: Outcome) {
         let mut outcomes = outcome.landmarks;
         for LandmarkOutcome { landmark, result, .. } in outcomes.drain(..) {
@@ -259,10 +262,13 @@ impl Follow {
         }
         let mut unreached = None;
         for &at in &lists.order {
+            let outcomes = &mut lists.by_landmark[at];
             if self.options.mode == Mode::Adaptive {
-                lists.by_landmark[at] = self.pursue(scene, at, &mut budget, probe);
+                let report = Report { outcomes, ids: &mut lists.ids, workspace: &mut self.workspace };
+                let (landmark, state) = (&self.set.landmarks[at], &mut self.state.landmarks[at]);
+                pursue::landmark(scene, landmark, state, &mut budget, &mut self.tools, report, probe);
             }
-            let skipped = lists.by_landmark[at].iter().any(|outcome| outcome.result == Err(Miss::Skipped));
+            let skipped = outcomes.iter().any(|outcome| outcome.result == Err(Miss::Skipped));
             if skipped && unreached.is_none() && self.state.landmarks[at].tracks.is_empty() {
                 unreached = Some(at);
             }
@@ -305,19 +311,8 @@ impl Follow {
         let landmarks = now.iter().map(|&at| set.landmarks[at].as_ref());
         register_all(scene.frame, landmarks, &request, workspace, probe, |number, seen, workspace| {
             let at = now[number];
-            let found = Found { outcomes: &mut by_landmark[at], ids, workspace };
-            faithful::landmark(scene, &set.landmarks[at], &mut state.landmarks[at], seen, found);
+            let report = Report { outcomes: &mut by_landmark[at], ids, workspace };
+            faithful::landmark(scene, &set.landmarks[at], &mut state.landmarks[at], seen, report);
         });
-    }
-
-    fn pursue<P: StageProbe>(
-        &mut self,
-        scene: &Scene<'_>,
-        at: usize,
-        budget: &mut Budget,
-        probe: &mut P,
-    ) -> Vec<LandmarkOutcome> {
-        let (landmark, state) = (&self.set.landmarks[at], &mut self.state.landmarks[at]);
-        pursue::landmark(scene, landmark, state, budget, &mut self.tools, probe)
     }
 }

@@ -68,6 +68,11 @@ impl Workspace {
         Self { masker, ..Self::default() }
     }
 
+    /// One that came back, or an empty one, to be written anew.
+    pub(crate) fn spare_sighting(&mut self) -> Sighting {
+        self.spare.pop().unwrap_or_default()
+    }
+
     /// As [`recycle`](Self::recycle), one of them.
     pub(crate) fn recycle_sighting(&mut self, sighting: Sighting) {
         if self.spare.len() < MOST_CANDIDATES {

@@ -6,23 +6,19 @@ use super::disc;
 use super::face::LETTERING_BRIGHTNESS;
 use super::like::Marker;
 use super::likeness::{Light, Likeness};
+use super::memory::{List, Memory, sorted};
 use super::patch::Patch;
+use super::seeds::{LEAST_SEED_PX, Seeds};
 use super::segment::{self, Parts, Segmented};
 use super::soft_edge::{self, Edge};
 use super::window;
 use crate::bitmask::BitMask;
-use crate::components::{Component, Components};
 use crate::frame::Frame;
 use crate::geometry::{PointPx, RectPx};
 use crate::landmark::{ColorStats, Landmark, ShapeClass};
 
-/// Fewer like pixels than this are no seed.
-pub(super) const LEAST_SEED_PX: u64 = 5;
 /// Seeds that fill more of the frame than this are background.
 const LARGEST_SEED: f32 = 0.3;
-/// Parts of a sign that lettering separates lie within this many sizes of its largest part.
-const PARTS_REACH: f32 = 0.5;
-
 /// Signs whose parts fill this much of their hull are filled.
 const FILLED_SOLIDITY: f32 = 0.55;
 /// Blocks that fill this much of their hull have no gaps.
@@ -50,7 +46,7 @@ pub(crate) struct Search<'a> {
     pub(crate) frame: &'a Frame,
     pub(crate) region: RectPx,
     pub(crate) landmark: &'a Landmark,
-    pub(crate) likeness: &'a Likeness,
+    pub(crate) likeness: Likeness<'a>,
     /// The light that is most likely.
     pub(crate) light: Light,
     pub(crate) noise_variance: [f32; 3],
@@ -61,9 +57,9 @@ pub(crate) struct Search<'a> {
 }
 
 /// One object that may be the landmark.
-#[derive(Clone, Debug)]
-pub(crate) struct Candidate {
-    pub(crate) object: Patch,
+#[derive(Debug)]
+pub(crate) struct Candidate<'m> {
+    pub(crate) object: Patch<'m>,
     pub(crate) centroid: PointPx,
     pub(crate) area_px2: f32,
     /// Brightness and haze over the descriptor's.
@@ -84,7 +80,12 @@ pub(crate) struct Candidate {
     pub(crate) score_if_further: f32,
 }
 
-impl Candidate {
+impl Candidate<'_> {
+    /// The same with its pixels in memory that lasts longer.
+    pub(super) fn kept_in(self, memory: &Memory) -> Candidate<'_> {
+        Candidate { object: self.object.copy_in(memory), ..self }
+    }
+
     /// Takes it for the part of a known object that something leaves in view.
     pub(crate) fn take_for_a_part(&mut self) {
         (self.cut, self.score) = (true, self.score_if_covered);
@@ -105,47 +106,46 @@ pub(crate) struct Finder {
     like: BitMask,
     /// What of `like` stays when paler tints do not count.
     deep: BitMask,
-    components: Components,
+    seeds: Seeds,
 }
 
 impl Finder {
     /// The objects in the searched region that look like the landmark, best first.
-    pub(crate) fn candidates(&mut self, search: &Search<'_>) -> Vec<Candidate> {
-        let mut found = if search.likeness.face().is_none() {
-            self.plain(search)
+    pub(crate) fn candidates<'m>(
+        &mut self,
+        search: &Search<'_>,
+        memory: &'m Memory,
+    ) -> List<'m, Candidate<'m>> {
+        let mut found = List::new_in(memory);
+        if search.likeness.face().is_none() {
+            self.plain(search, &mut found);
         } else if search.landmark.shape.is_board() {
-            self.boards(search)
+            self.boards(search, &mut found);
         } else {
-            self.lettered(search)
-        };
-        found.sort_by(|a, b| b.score.total_cmp(&a.score));
-        without_overlaps(found)
-    }
-
-    fn plain(&mut self, search: &Search<'_>) -> Vec<Candidate> {
-        let Self { marker, like, deep, components } = self;
-        let mut found = Vec::new();
-        marker.mark(search.frame, search.region, search.likeness, like);
-        components.find(like);
-        from_seeds(search, components, &mut found);
-        if !is_clear(&found) {
-            let likeness = search.likeness.stricter();
-            marker.refine(search.frame, search.region, &likeness, like, deep);
-            components.find(deep);
-            from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
+            self.lettered(search, &mut found);
         }
-        found
+        without_overlaps(sorted(found, |a, b| b.score.total_cmp(&a.score)), memory)
     }
 
-    fn boards(&mut self, search: &Search<'_>) -> Vec<Candidate> {
-        let Self { marker, like, deep, components } = self;
+    fn plain<'m>(&mut self, search: &Search<'_>, found: &mut List<'m, Candidate<'m>>) {
+        let Self { marker, like, deep, seeds } = self;
+        marker.mark(search.frame, search.region, &search.likeness, like);
+        from_seeds(search, like, seeds, found);
+        if !is_clear(found) {
+            let likeness = search.likeness.stricter(found.bump());
+            marker.refine(search.frame, search.region, &likeness, like, deep);
+            from_seeds(&Search { likeness, ..*search }, deep, seeds, found);
+        }
+    }
+
+    fn boards<'m>(&mut self, search: &Search<'_>, found: &mut List<'m, Candidate<'m>>) {
+        let Self { marker, like, deep, seeds } = self;
         marker.mark(search.frame, search.region, &search.likeness.with_palest(PALEST[0]), like);
-        board::find(search, like, deep, components)
+        board::find(search, like, deep, seeds, found);
     }
 
-    fn lettered(&mut self, search: &Search<'_>) -> Vec<Candidate> {
-        let Self { marker, like, deep, components } = self;
-        let mut found = Vec::new();
+    fn lettered<'m>(&mut self, search: &Search<'_>, found: &mut List<'m, Candidate<'m>>) {
+        let Self { marker, like, deep, seeds } = self;
         let palest = search.likeness.with_palest(PALEST[0]);
         marker.mark(search.frame, search.region, &palest, like);
         let deep_tint = search.landmark.shape.is_round().then_some(DEEP_TINT);
@@ -153,76 +153,37 @@ impl Finder {
             let likeness = search.likeness.with_palest(palest);
             let likeness = if palest == DEEP_TINT { likeness.by_tint_alone() } else { likeness };
             marker.refine(search.frame, search.region, &likeness, like, deep);
-            components.find(deep);
-            from_seeds(&Search { likeness: &likeness, ..*search }, components, &mut found);
+            from_seeds(&Search { likeness, ..*search }, deep, seeds, found);
         }
-        found
     }
 }
 
-fn is_clear(found: &[Candidate]) -> bool {
+fn is_clear(found: &[Candidate<'_>]) -> bool {
     found.iter().any(|known| known.score >= CLEAR_SCORE)
 }
 
-fn from_seeds(search: &Search<'_>, components: &Components, all: &mut Vec<Candidate>) {
+/// Adds what the connected sets of a mask are.
+fn from_seeds<'m>(search: &Search<'_>, mask: &BitMask, seeds: &mut Seeds, all: &mut List<'m, Candidate<'m>>) {
     let frame_px = search.frame.width() as f32 * search.frame.height() as f32;
-    let largest_px = (LARGEST_SEED * frame_px) as u64;
-    let of_size = |component: &&Component| (LEAST_SEED_PX..=largest_px).contains(&component.pixels);
-    let mut seeds: Vec<&Component> = components.list().iter().filter(of_size).collect();
-    seeds.sort_by_key(|component| std::cmp::Reverse(component.pixels));
-    let known = all.len();
-    for seed in seeds.iter().take(search.limit) {
-        let (x, y) = seed.mean_pixel();
-        let centre = PointPx::new(
-            (f64::from(search.region.x) + x + 0.5) as f32,
-            (f64::from(search.region.y) + y + 0.5) as f32,
-        );
-        if !all[known..].iter().any(|known| known.covers(centre)) {
-            let alone = seed_patch(search, components, seed, &[]);
-            all.extend(candidate(search, &alone));
-            all.extend(round_candidate(search, &alone));
-            let parts = parts_of_sign(search, seed, &seeds);
-            if !parts.is_empty() {
-                all.extend(candidate(search, &seed_patch(search, components, seed, &parts)));
-            }
+    seeds.find(mask, LEAST_SEED_PX..=(LARGEST_SEED * frame_px) as u64);
+    let (known, memory) = (all.len(), all.bump());
+    for at in 0..seeds.len().min(search.limit) {
+        let (seed, scratch) = seeds.seed_and_scratch(at);
+        let centre = seed.centre(search);
+        if all[known..].iter().any(|known| known.covers(centre)) {
+            continue;
         }
+        let alone = seed.alone(search, scratch);
+        let whole = seed.with_parts(search, scratch);
+        let found = [candidate(search, &alone), round_candidate(search, &alone)];
+        let found = found.into_iter().chain([whole.and_then(|whole| candidate(search, &whole))]);
+        all.extend(found.flatten().map(|candidate| candidate.kept_in(memory)));
     }
 }
 
-/// The parts of a sign that lettering separates from `seed`, its largest one.
-fn parts_of_sign<'a>(search: &Search<'_>, seed: &Component, all: &[&'a Component]) -> Vec<&'a Component> {
-    if !search.landmark.shape.is_sign() {
-        return Vec::new();
-    }
-    let reach = (PARTS_REACH * (seed.width().max(seed.height())) as f32) as u32;
-    let belongs = |other: &&&Component| {
-        let apart = |a: (u32, u32), b: (u32, u32)| b.0.saturating_sub(a.1).max(a.0.saturating_sub(b.1));
-        let dx = apart((seed.x_start, seed.x_end), (other.x_start, other.x_end));
-        let dy = apart((seed.y_start, seed.y_end), (other.y_start, other.y_end));
-        let itself =
-            (seed.x_start, seed.y_start, seed.pixels) == (other.x_start, other.y_start, other.pixels);
-        !itself && dx.max(dy) <= reach && 20 * other.pixels >= seed.pixels && other.pixels <= seed.pixels
-    };
-    all.iter().filter(belongs).copied().collect()
-}
-
-/// A component and what belongs to it, with room around them.
-fn seed_patch(search: &Search<'_>, components: &Components, seed: &Component, parts: &[&Component]) -> Patch {
-    let mut bounds = (seed.x_start, seed.y_start, seed.x_end, seed.y_end);
-    let mut runs = components.runs(seed).to_vec();
-    for part in parts {
-        let (left, top) = (bounds.0.min(part.x_start), bounds.1.min(part.y_start));
-        bounds = (left, top, bounds.2.max(part.x_end), bounds.3.max(part.y_end));
-        runs.extend_from_slice(components.runs(part));
-    }
-    let (x, y) = (search.region.x + bounds.0, search.region.y + bounds.1);
-    let bounds = RectPx { x, y, width: bounds.2 - bounds.0, height: bounds.3 - bounds.1 };
-    Patch::from_runs(segment::surroundings(bounds, search.frame), search.region, &runs)
-}
-
-fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
+fn candidate<'s>(search: &Search<'_>, seed: &Patch<'s>) -> Option<Candidate<'s>> {
     let parts = if search.landmark.shape.is_sign() { Parts::All } else { Parts::Largest };
-    let Segmented { object: seen, is_shadow } = segment::object(search.frame, seed, search.likeness, parts)?;
+    let Segmented { object: seen, is_shadow } = segment::object(search.frame, seed, &search.likeness, parts)?;
     let form = Form::of(&seen);
     let sign = search.landmark.shape.is_sign() && form.solidity >= FILLED_SOLIDITY;
     let (object, form) = match search.landmark.shape {
@@ -241,7 +202,7 @@ fn candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
 
 /// A block whose face is another colour within a frame of its own is whole when the frame goes all around, or nearly so:
 /// something may cover a corner, or a gap let the background in. Faces of blocks are convex.
-fn whole_block(seen: Patch, form: Form) -> (Patch, Form) {
+fn whole_block(seen: Patch<'_>, form: Form) -> (Patch<'_>, Form) {
     if form.solidity >= WHOLE_SOLIDITY {
         return (seen, form);
     }
@@ -258,13 +219,13 @@ fn whole_block(seen: Patch, form: Form) -> (Patch, Form) {
 }
 
 /// A sign too small to show its outline, near a seed.
-fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
+fn round_candidate<'s>(search: &Search<'_>, seed: &Patch<'s>) -> Option<Candidate<'s>> {
     let face = search.likeness.face()?;
     let bounds = seed.bounds()?;
     if !search.landmark.shape.is_round() || bounds.width.max(bounds.height) > DISC_SIZE_PX {
         return None;
     }
-    let found = disc::find(search.frame, seed.rect, bounds, face)?;
+    let found = disc::find(seed.memory(), search.frame, seed.rect, bounds, face)?;
     let (disc_px, seed_px) = (found.mask.count(), seed.count());
     let common_px = seed_px - seed.without(&found.mask).count();
     let fitted = Some(common_px as f32 / (disc_px + seed_px - common_px) as f32);
@@ -279,7 +240,7 @@ fn round_candidate(search: &Search<'_>, seed: &Patch) -> Option<Candidate> {
     Some(candidate)
 }
 
-fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Option<Candidate> {
+fn measured<'s>(search: &Search<'_>, object: Patch<'s>, form: &Form, edge: Edge) -> Option<Candidate<'s>> {
     let (centroid, area_px2) = soft_edge::centroid_and_area(search.frame, &object, edge)?;
     let (window_px, observed) = window::best(search, &object, area_px2)?;
     let factors = choose::factors(search, &object, form, area_px2, &observed);
@@ -304,7 +265,7 @@ fn measured(search: &Search<'_>, object: Patch, form: &Form, edge: Edge) -> Opti
 
 /// White that the object's own colours have more than the descriptor's, levels; signs are known by their tint, which haze
 /// leaves as it is.
-fn haze(search: &Search<'_>, object: &Patch) -> f32 {
+fn haze(search: &Search<'_>, object: &Patch<'_>) -> f32 {
     if search.likeness.face().is_some() {
         return 0.0;
     }
@@ -319,15 +280,18 @@ fn haze(search: &Search<'_>, object: &Patch) -> f32 {
 }
 
 /// A sign's border: light and without a tint, wider on larger signs.
-fn border(search: &Search<'_>, object: &Patch) -> Edge {
+fn border(search: &Search<'_>, object: &Patch<'_>) -> Edge {
     let brightest = search.landmark.shades.iter().flat_map(|shade| shade.mean).fold(0.0, f32::max);
     let level = (LETTERING_BRIGHTNESS * search.light.gain * brightest).min(255.0);
     let size_px = (object.count() as f32).sqrt();
     Edge::Bordered { color: [level; 3], width_px: (0.06 * size_px).round().clamp(1.0, 6.0) as i32 }
 }
 
-fn without_overlaps(found: Vec<Candidate>) -> Vec<Candidate> {
-    let mut kept: Vec<Candidate> = Vec::new();
+fn without_overlaps<'m>(
+    found: impl Iterator<Item = Candidate<'m>>,
+    memory: &'m Memory,
+) -> List<'m, Candidate<'m>> {
+    let mut kept: List<'_, Candidate<'_>> = List::new_in(memory);
     for candidate in found {
         if !kept.iter().any(|better| better.covers(candidate.centroid) || candidate.covers(better.centroid)) {
             kept.push(candidate);

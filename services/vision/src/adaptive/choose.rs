@@ -1,6 +1,7 @@
 //! How much an object looks like the landmark: colour, texture, light, size, form and what surrounds it.
 
 use super::candidate::Search;
+use super::memory::{CollectIn, List};
 use super::patch::{Patch, enclosing_rectangle_area, polygon_area_and_centroid};
 use crate::geometry::PointPx;
 use crate::landmark::{ColorStats, ShapeClass};
@@ -61,7 +62,7 @@ impl Form {
         lettering: 0.0,
     };
 
-    pub(crate) fn of(object: &Patch) -> Self {
+    pub(crate) fn of(object: &Patch<'_>) -> Self {
         let area = object.count() as f32;
         let hull = object.hull();
         let hull_area = polygon_area_and_centroid(&hull).map_or(area, |(hull_area, _)| hull_area);
@@ -114,7 +115,7 @@ fn roundness(hull: &[PointPx], area_px2: f32) -> f32 {
     (4.0 * std::f32::consts::PI * area_px2 / perimeter_px.powi(2).max(1.0)).min(1.0)
 }
 
-fn elongation(object: &Patch) -> f32 {
+fn elongation(object: &Patch<'_>) -> f32 {
     let (mut n, mut sx, mut sy, mut xx, mut xy, mut yy) = (0.0_f64, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (x, y) in object.set_places() {
         let (x, y) = (f64::from(x), f64::from(y));
@@ -184,7 +185,7 @@ impl Factors {
 /// How much the object looks like the landmark.
 pub(crate) fn factors(
     search: &Search<'_>,
-    object: &Patch,
+    object: &Patch<'_>,
     form: &Form,
     area_px2: f32,
     observed: &ColorStats,
@@ -204,8 +205,9 @@ pub(crate) fn factors(
         scale: 1.0,
     };
     if let Some(face) = search.likeness.face() {
-        let seen = face.compare(face_pixels(search, object).map(|(color, _)| color));
-        let pale = face.pale_middle(face_pixels(search, object));
+        let pixels = face_pixels(search, object);
+        let seen = face.compare(pixels.iter().map(|(color, _)| *color));
+        let pale = face.pale_middle(pixels.iter().copied());
         let round = |least_fitting: f32| {
             if shape.is_round() { form.suits_round(area_px2, least_fitting) } else { 1.0 }
         };
@@ -252,20 +254,23 @@ fn resolved(search: &Search<'_>, area_px2: f32) -> f32 {
     ((diameter_px / search.blur_px - SMEARED) / (CLEAR - SMEARED)).clamp(0.0, 1.0)
 }
 
-/// The pixels of an object without its edge, each with its distance from the middle as a part of the radius.
-fn face_pixels<'a>(search: &'a Search<'_>, object: &'a Patch) -> impl Iterator<Item = ([f32; 3], f32)> + 'a {
+/// A pixel of an object and its distance from the middle as a part of the radius.
+type FacePixel = ([f32; 3], f32);
+
+/// The pixels of an object without its edge.
+fn face_pixels<'s>(search: &Search<'_>, object: &Patch<'s>) -> List<'s, FacePixel> {
     let inner = object.eroded(1);
-    let inner = if inner.count() >= 9 { inner } else { object.clone() };
+    let inner = if inner.count() >= 9 { &inner } else { object };
     let (mut n, mut sx, mut sy) = (0.0_f32, 0.0_f32, 0.0_f32);
     for (x, y) in inner.set_places() {
         (n, sx, sy) = (n + 1.0, sx + x as f32, sy + y as f32);
     }
     let (mx, my, radius) = (sx / n, sy / n, (object.count() as f32 / std::f32::consts::PI).sqrt());
-    let places: Vec<(i32, i32)> = inner.set_places().collect();
-    places.into_iter().map(move |(x, y)| {
+    let pixel = |(x, y): (i32, i32)| {
         let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
         (pixel.map(f32::from), (x as f32 - mx).hypot(y as f32 - my) / radius)
-    })
+    };
+    inner.set_places().map(pixel).collect_in(object.memory())
 }
 
 /// By how many tolerances the observed variance exceeds the descriptor's, camera noise taken out.
@@ -280,7 +285,7 @@ pub(super) fn variance_excess(search: &Search<'_>, observed: &ColorStats) -> f32
 }
 
 /// The part of a ring around the object that does not look like the landmark: low inside something larger.
-fn isolation(search: &Search<'_>, object: &Patch) -> f32 {
+fn isolation(search: &Search<'_>, object: &Patch<'_>) -> f32 {
     let inner = object.dilated(2);
     let ring = inner.dilated(2).without(&inner);
     let (mut like, mut all) = (0.0_f32, 0.0_f32);

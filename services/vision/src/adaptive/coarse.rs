@@ -42,11 +42,14 @@ struct Differences {
 }
 
 impl Coarse {
-    pub(crate) fn new(boxes: impl Iterator<Item = [(f32, f32); 3]>, tint: Option<[f32; 6]>) -> Self {
+    /// Makes these the sets around `boxes` and the tint of such differences, in the same memory.
+    pub(crate) fn enclose(&mut self, boxes: impl Iterator<Item = [(f32, f32); 3]>, tint: Option<[f32; 6]>) {
         let least = |differences: [f32; 6]| Differences {
             least: differences.map(|d| d.floor().clamp(0.0, 255.0) as u8),
         };
-        Self { boxes: boxes.filter_map(Box3::new).collect(), tint: tint.map(least) }
+        self.boxes.clear();
+        self.boxes.extend(boxes.filter_map(Box3::new));
+        self.tint = tint.map(least);
     }
 
     /// Whether a pixel of these may match. At most [`RUN_PX`] pixels; of fewer, what lies behind them counts as black.

@@ -4,6 +4,7 @@
 //! and bushes. A disc whose inside shows the tint and whose surroundings do not, on all sides, is the better model.
 
 use super::face::Face;
+use super::memory::{List, Memory};
 use super::patch::Patch;
 use crate::frame::Frame;
 use crate::geometry::{PointPx, RectPx};
@@ -51,9 +52,9 @@ impl Contrast {
 }
 
 /// A disc that stands out.
-pub(crate) struct Found {
+pub(crate) struct Found<'s> {
     pub(crate) centre: PointPx,
-    pub(crate) mask: Patch,
+    pub(crate) mask: Patch<'s>,
     /// How clearly it stands out on its weaker sides, 0..1.
     pub(crate) clear: f32,
     /// How much lighter its middle is, as a part of what a clear face shows.
@@ -61,8 +62,14 @@ pub(crate) struct Found {
 }
 
 /// The most outstanding disc centred within `bounds` of the frame, as a mask of the pixels of `rect`.
-pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> Option<Found> {
-    let tints = Tints::of(frame, rect, face);
+pub(crate) fn find<'s>(
+    memory: &'s Memory,
+    frame: &Frame,
+    rect: RectPx,
+    bounds: RectPx,
+    face: &Face,
+) -> Option<Found<'s>> {
+    let tints = Tints::of(memory, frame, rect, face);
     let (left, top) = ((bounds.x - rect.x) as f32, (bounds.y - rect.y) as f32);
     let mut best = Best::default();
     let largest = RADII_PX.1.min(0.75 * bounds.width.max(bounds.height) as f32 + 1.0);
@@ -88,7 +95,7 @@ pub(crate) fn find(frame: &Frame, rect: RectPx, bounds: RectPx, face: &Face) -> 
     let (disc, contrast) = best.found?;
     (contrast.overall > 0.15).then(|| Found {
         centre: PointPx::new(rect.x as f32 + disc.x, rect.y as f32 + disc.y),
-        mask: disc.patch(rect),
+        mask: disc.patch(memory, rect),
         clear: contrast.weakest.clamp(0.0, 1.0),
         lettering: contrast.light_middle - EDGE_ALONE,
     })
@@ -102,7 +109,7 @@ struct Best {
 }
 
 impl Best {
-    fn try_around(&mut self, tints: &Tints, disc: Disc, step_px: f32) {
+    fn try_around(&mut self, tints: &Tints<'_>, disc: Disc, step_px: f32) {
         for scale in [1.0 / RADIUS_STEP.powf(2.0 * step_px), 1.0, RADIUS_STEP.powf(2.0 * step_px)] {
             for v in -1..=1 {
                 for u in -1..=1 {
@@ -113,7 +120,7 @@ impl Best {
         }
     }
 
-    fn try_disc(&mut self, tints: &Tints, disc: Disc) {
+    fn try_disc(&mut self, tints: &Tints<'_>, disc: Disc) {
         // Nothing around it can make a disc stand out more than its own tint.
         if self.found.is_some()
             && MOST_MERIT * (tints.inside(disc) + 0.05) * disc.radius.powf(0.6) <= self.merit
@@ -129,35 +136,35 @@ impl Best {
 }
 
 impl Disc {
-    fn patch(self, rect: RectPx) -> Patch {
-        Patch::from_fn(rect, |x, y| {
+    fn patch(self, memory: &Memory, rect: RectPx) -> Patch<'_> {
+        Patch::from_fn(memory, rect, |x, y| {
             (x as f32 + 0.5 - self.x).powi(2) + (y as f32 + 0.5 - self.y).powi(2) <= self.radius * self.radius
         })
     }
 }
 
 /// How much of the tint each pixel of a rectangle shows, 1 for the pure colour.
-struct Tints {
+struct Tints<'s> {
     width: i32,
     height: i32,
     /// Tint and brightness of each pixel.
-    values: Vec<(f32, f32)>,
+    values: List<'s, (f32, f32)>,
     /// For each row the sums of the tints left of each column.
-    sums: Vec<f32>,
+    sums: List<'s, f32>,
     /// How much lighter than the sign's colour lettering is, levels.
     lighter: f32,
 }
 
-impl Tints {
-    fn of(frame: &Frame, rect: RectPx, face: &Face) -> Self {
+impl<'s> Tints<'s> {
+    fn of(memory: &'s Memory, frame: &Frame, rect: RectPx, face: &Face) -> Self {
         let rows = rect.y..rect.y + rect.height;
         let tint = |x: u32, y: u32| {
             let color = frame.pixel(x, y).map(f32::from);
             (face.tint_of(color), (color[0] + color[1] + color[2]) / 3.0)
         };
-        let values: Vec<(f32, f32)> =
-            rows.flat_map(|y| (rect.x..rect.x + rect.width).map(move |x| tint(x, y))).collect();
-        let mut sums = Vec::with_capacity(values.len() + rect.height as usize);
+        let mut values = List::with_capacity_in((rect.width * rect.height) as usize, memory);
+        values.extend(rows.flat_map(|y| (rect.x..rect.x + rect.width).map(move |x| tint(x, y))));
+        let mut sums = List::with_capacity_in(values.len() + rect.height as usize, memory);
         for row in values.chunks_exact(rect.width as usize) {
             sums.push(0.0);
             sums.extend(row.iter().scan(0.0, |sum, (tint, _)| {

@@ -24,14 +24,23 @@ const WORD_PX: u32 = 64;
 #[derive(Debug, Default)]
 pub(crate) struct Marker {
     lanes: Lanes,
+    coarse: Coarse,
     bits: Vec<u64>,
+    /// The words of a band's rows that are asked.
+    wanted: Vec<u64>,
     /// For each band and word whether a pixel of the band's middle row matches.
     alive: Vec<bool>,
 }
 
 impl Marker {
     /// Makes `mask` the like pixels of `region`.
-    pub(crate) fn mark(&mut self, frame: &Frame, region: RectPx, likeness: &Likeness, mask: &mut BitMask) {
+    pub(crate) fn mark(
+        &mut self,
+        frame: &Frame,
+        region: RectPx,
+        likeness: &Likeness<'_>,
+        mask: &mut BitMask,
+    ) {
         mask.reset(region.width, region.height);
         let words = region.width.div_ceil(WORD_PX) as usize;
         self.bits.clear();
@@ -50,9 +59,9 @@ impl Marker {
             if !self.choose_words(band, bands, words) {
                 continue;
             }
-            let wanted = self.bits.clone();
+            self.wanted.clone_from(&self.bits);
             for y in BAND * band as u32..(BAND * (band as u32 + 1)).min(region.height) {
-                self.bits.copy_from_slice(&wanted);
+                self.bits.copy_from_slice(&self.wanted);
                 self.mark_row(frame, region, likeness, y, mask);
             }
         }
@@ -63,7 +72,7 @@ impl Marker {
         &mut self,
         frame: &Frame,
         region: RectPx,
-        likeness: &Likeness,
+        likeness: &Likeness<'_>,
         mask: &BitMask,
         refined: &mut BitMask,
     ) {
@@ -79,7 +88,14 @@ impl Marker {
     }
 
     /// Asks the pixels of those words of a row of which `bits` wants any, and marks the wanted ones that match.
-    fn mark_row(&mut self, frame: &Frame, region: RectPx, likeness: &Likeness, y: u32, mask: &mut BitMask) {
+    fn mark_row(
+        &mut self,
+        frame: &Frame,
+        region: RectPx,
+        likeness: &Likeness<'_>,
+        y: u32,
+        mask: &mut BitMask,
+    ) {
         self.lanes.like_bits(row_of(frame, region, y), likeness, &mut self.bits);
         for (word, &bits) in self.bits.iter().enumerate() {
             if bits != 0 {
@@ -88,14 +104,14 @@ impl Marker {
         }
     }
 
-    fn sift(&mut self, frame: &Frame, region: RectPx, likeness: &Likeness) {
-        let coarse = likeness.coarse();
+    fn sift(&mut self, frame: &Frame, region: RectPx, likeness: &Likeness<'_>) {
+        likeness.enclose_in(&mut self.coarse);
         self.alive.clear();
         let mut y = (BAND / 2).min(region.height - 1);
         for _ in 0..region.height.div_ceil(BAND) {
             self.bits.fill(0);
             let row = row_of(frame, region, y.min(region.height - 1));
-            self.lanes.like_words(row, &coarse, likeness, &mut self.bits);
+            self.lanes.like_words(row, &self.coarse, likeness, &mut self.bits);
             self.alive.extend(self.bits.iter().map(|&bits| bits != 0));
             y += BAND;
         }
@@ -121,7 +137,7 @@ fn row_of(frame: &Frame, region: RectPx, y: u32) -> &[u8] {
 
 /// Leaves of the wanted `bits` of a row those whose pixel matches. Words without a wanted bit are not looked at.
 #[inline(always)]
-pub(crate) fn like_bits(row: &[u8], likeness: &Likeness, bits: &mut [u64]) {
+pub(crate) fn like_bits(row: &[u8], likeness: &Likeness<'_>, bits: &mut [u64]) {
     for (bits, pixels) in bits.iter_mut().zip(row.chunks(3 * WORD_PX as usize)) {
         if *bits != 0 {
             *bits &= likeness.matching(pixels);
@@ -131,7 +147,7 @@ pub(crate) fn like_bits(row: &[u8], likeness: &Likeness, bits: &mut [u64]) {
 
 /// Sets in `bits` the pixels of a row that match.
 #[inline(always)]
-pub(crate) fn like_words(row: &[u8], coarse: &Coarse, likeness: &Likeness, bits: &mut [u64]) {
+pub(crate) fn like_words(row: &[u8], coarse: &Coarse, likeness: &Likeness<'_>, bits: &mut [u64]) {
     for (bits, pixels) in bits.iter_mut().zip(row.chunks(3 * WORD_PX as usize)) {
         let mut any = false;
         for run in pixels.chunks(3 * RUN_PX) {
@@ -147,15 +163,16 @@ pub(crate) fn like_words(row: &[u8], coarse: &Coarse, likeness: &Likeness, bits:
 mod tests {
     use super::*;
     use crate::adaptive::likeness::Light;
+    use crate::adaptive::memory::Memory;
     use crate::components::Components;
     use crate::landmark::{ColorStats, Digest, Landmark, ShapeClass, WindowPx};
     use proptest::prelude::*;
 
     /// A plain landmark, or a sign whose second shade is its whole face.
-    fn likeness(mean: [f32; 3], shape: ShapeClass) -> Likeness {
+    fn landmark(mean: [f32; 3], shape: ShapeClass) -> Landmark {
         let plain = ColorStats { mean, variance: [20.0; 3] };
         let face = ColorStats { mean: mean.map(|m| 0.6 * m + 80.0), variance: [3000.0; 3] };
-        let landmark = Landmark {
+        Landmark {
             id: "test".into(),
             revision: 1,
             window_px: WindowPx::square(8),
@@ -164,8 +181,11 @@ mod tests {
             shape,
             size_m: None,
             digest: Digest::default(),
-        };
-        Likeness::anywhere(&landmark, Light::AS_LEARNED, [4.0; 3])
+        }
+    }
+
+    fn likeness<'m>(memory: &'m Memory, landmark: &Landmark) -> Likeness<'m> {
+        Likeness::anywhere(memory, landmark, Light::AS_LEARNED, [4.0; 3])
     }
 
     /// Noise of all colours with flat discs of the landmark's.
@@ -185,7 +205,7 @@ mod tests {
         Frame::from_rgb(width, height, rgb.collect()).unwrap()
     }
 
-    fn slowly(frame: &Frame, region: RectPx, likeness: &Likeness) -> BitMask {
+    fn slowly(frame: &Frame, region: RectPx, likeness: &Likeness<'_>) -> BitMask {
         let mut mask = BitMask::new(region.width, region.height);
         for (y, x) in (0..region.height).flat_map(|y| (0..region.width).map(move |x| (y, x))) {
             if likeness.matches(frame.pixel(region.x + x, region.y + y)) {
@@ -195,9 +215,9 @@ mod tests {
         mask
     }
 
-    fn landmarks() -> impl Strategy<Value = Likeness> {
+    fn landmarks() -> impl Strategy<Value = Landmark> {
         (any::<[u8; 3]>(), prop_oneof![Just(ShapeClass::Block), Just(ShapeClass::Octagon)])
-            .prop_map(|(mean, shape)| likeness(mean.map(f32::from), shape))
+            .prop_map(|(mean, shape)| landmark(mean.map(f32::from), shape))
     }
 
     proptest! {
@@ -205,8 +225,10 @@ mod tests {
 
         #[test]
         fn pixels_of_a_gate_are_those_that_match(
-            likeness in landmarks(), seed in any::<u64>(), x in 0u32..30, width in 1u32..140,
+            landmark in landmarks(), seed in any::<u64>(), x in 0u32..30, width in 1u32..140,
         ) {
+            let memory = Memory::new();
+            let likeness = likeness(&memory, &landmark);
             let frame = frame(170, 20, seed, [0.0; 3], &[]);
             let region = RectPx { x, y: 2, width, height: 17 };
             let (mut marker, mut mask) = (Marker::default(), BitMask::default());
@@ -219,8 +241,9 @@ mod tests {
             mean in any::<[u8; 3]>(), seed in any::<u64>(),
             discs in proptest::collection::vec((0u32..320, 0u32..160, 2u32..20), 1..5),
         ) {
-            let own = mean.map(f32::from);
-            let (likeness, frame) = (likeness(own, ShapeClass::Block), frame(320, 160, seed, own, &discs));
+            let (memory, own) = (Memory::new(), mean.map(f32::from));
+            let likeness = likeness(&memory, &landmark(own, ShapeClass::Block));
+            let frame = frame(320, 160, seed, own, &discs);
             let region = RectPx::whole(frame.size());
             let (mut marker, mut mask) = (Marker::default(), BitMask::default());
             marker.mark(&frame, region, &likeness, &mut mask);

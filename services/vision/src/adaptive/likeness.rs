@@ -2,6 +2,7 @@
 
 use super::coarse::Coarse;
 use super::face::{self, Face};
+use super::memory::{CollectIn, List, Memory};
 use super::palette::{dot, minus};
 use crate::landmark::{ColorStats, Landmark};
 
@@ -34,9 +35,9 @@ const LIT_SPREAD: f32 = 14.0;
 
 /// The colours of a landmark's shades with more or less light on them: a slim cone around each shade's line through
 /// black.
-#[derive(Clone, Debug)]
-pub(crate) struct Likeness {
-    cones: Vec<Cone>,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Likeness<'m> {
+    cones: &'m [Cone],
     /// So many of them are asked whether a pixel matches.
     asked: usize,
     /// The face of a lettered sign as a whole, where the descriptor tells it.
@@ -82,18 +83,34 @@ pub(crate) struct Match {
     pub(crate) excess: f32,
 }
 
-impl Likeness {
+impl<'m> Likeness<'m> {
     /// For a search of the whole frame, nothing known of the light but `gain`, its most likely value.
-    pub(crate) fn anywhere(landmark: &Landmark, light: Light, noise_variance: [f32; 3]) -> Self {
-        Self::new(landmark, light, FULL_SEARCH_GAIN, noise_variance)
+    pub(crate) fn anywhere(
+        memory: &'m Memory,
+        landmark: &Landmark,
+        light: Light,
+        noise_variance: [f32; 3],
+    ) -> Self {
+        Self::new(memory, landmark, light, FULL_SEARCH_GAIN, noise_variance)
     }
 
     /// For an object that was last seen under `light`.
-    pub(crate) fn followed(landmark: &Landmark, light: Light, noise_variance: [f32; 3]) -> Self {
-        Self::new(landmark, light, FOLLOWED_GAIN, noise_variance)
+    pub(crate) fn followed(
+        memory: &'m Memory,
+        landmark: &Landmark,
+        light: Light,
+        noise_variance: [f32; 3],
+    ) -> Self {
+        Self::new(memory, landmark, light, FOLLOWED_GAIN, noise_variance)
     }
 
-    fn new(landmark: &Landmark, light: Light, factor: f32, noise_variance: [f32; 3]) -> Self {
+    fn new(
+        memory: &'m Memory,
+        landmark: &Landmark,
+        light: Light,
+        factor: f32,
+        noise_variance: [f32; 3],
+    ) -> Self {
         let far = face::far_view(landmark);
         let gain = light.gain;
         let haze = light.haze.signum() * (light.haze.abs() - COVERED_HAZE).max(0.0);
@@ -115,10 +132,10 @@ impl Likeness {
         };
         let plain =
             landmark.shades.iter().enumerate().filter(|(at, _)| Some(*at) != far).map(|(_, shade)| shade);
-        let cones: Vec<Cone> = plain.map(cone).collect();
+        let cones: List<'m, Cone> = plain.map(cone).collect_in(memory);
         Self {
             asked: cones.len(),
-            cones,
+            cones: cones.into_bump_slice(),
             face: far.and_then(|at| Face::of(landmark, at, gain)),
             gain_range: factor,
         }
@@ -127,17 +144,18 @@ impl Likeness {
     /// The same, but tints paler than `palest` (a part of the pure shade's distance from grey) are not the landmark's.
     pub(crate) fn with_palest(&self, palest: f32) -> Self {
         let face = self.face.map(|face| face.with_palest(palest));
-        Self { face, ..self.clone() }
+        Self { face, ..*self }
     }
 
     /// The same, but plain shades match within a part of their tolerances only.
-    pub(crate) fn stricter(&self) -> Self {
+    pub(crate) fn stricter<'k>(&self, memory: &'k Memory) -> Likeness<'k> {
         let strict = |cone: &Cone| Cone {
             tolerance: cone.tolerance.map(|tolerance| STRICT * tolerance),
             widening: STRICT * cone.widening,
             ..*cone
         };
-        Self { cones: self.cones.iter().map(strict).collect(), ..self.clone() }
+        let cones = memory.alloc_slice_fill_iter(self.cones.iter().map(strict));
+        Likeness { cones, ..*self }
     }
 
     /// The same, but only the tint says what matches.
@@ -194,12 +212,10 @@ impl Likeness {
         if rgb.len() >= 192 { bits } else { bits & ((1 << (rgb.len() / 3)) - 1) }
     }
 
-    /// What tells at a glance that no pixel of a run matches.
-    pub(crate) fn coarse(&self) -> Coarse {
-        Coarse::new(
-            self.cones[..self.asked].iter().map(Cone::bounds),
-            self.face.as_ref().map(Face::least_differences),
-        )
+    /// Makes `coarse` tell at a glance that no pixel of a run matches.
+    pub(crate) fn enclose_in(&self, coarse: &mut Coarse) {
+        let boxes = self.cones[..self.asked].iter().map(Cone::bounds);
+        coarse.enclose(boxes, self.face.as_ref().map(Face::least_differences));
     }
 
     /// Whether a colour is a vivid shade's with more light on it than a whole object gets: a face turned to the light.
@@ -208,7 +224,7 @@ impl Likeness {
     }
 
     /// The means of the shades.
-    pub(crate) fn shades(&self) -> impl Iterator<Item = [f32; 3]> + '_ {
+    pub(crate) fn shades(&self) -> impl Iterator<Item = [f32; 3]> + use<'m> {
         self.cones.iter().map(|cone| cone.shade)
     }
 

@@ -4,6 +4,8 @@
 //! itself otherwise. Two rounds of re-assignment then settle the means. The result depends on the colours alone,
 //! not on the order of the pixels.
 
+use super::memory::{CollectIn, List, Memory, sorted};
+
 /// Histogram bins a channel: 16 levels each.
 const BINS: usize = 16;
 
@@ -17,14 +19,18 @@ pub(crate) struct Cluster {
 }
 
 /// At most `limit` colours that stand for `pixels`, fullest first, at least about `radius` levels apart.
-pub(crate) fn palette(pixels: impl Iterator<Item = [u8; 3]>, radius: f32, limit: usize) -> Vec<Cluster> {
-    let bins = filled_bins(pixels);
-    let mut clusters = leaders(&bins, radius, limit);
+pub(crate) fn palette<'m>(
+    memory: &'m Memory,
+    pixels: impl Iterator<Item = [u8; 3]>,
+    radius: f32,
+    limit: usize,
+) -> List<'m, Cluster> {
+    let bins = filled_bins(memory, pixels);
+    let mut clusters = leaders(memory, &bins, radius, limit);
     for _ in 0..2 {
-        settle(&mut clusters, &bins);
+        settle(memory, &mut clusters, &bins);
     }
-    clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.pixels));
-    clusters
+    sorted(clusters, |a, b| b.pixels.cmp(&a.pixels)).collect_in(memory)
 }
 
 /// Squared Euclidean distance of two colours, levels².
@@ -56,10 +62,10 @@ pub(crate) fn levels(pixel: [u8; 3]) -> [f32; 3] {
     pixel.map(f32::from)
 }
 
-fn filled_bins(pixels: impl Iterator<Item = [u8; 3]>) -> Vec<Cluster> {
+fn filled_bins(memory: &Memory, pixels: impl Iterator<Item = [u8; 3]>) -> List<'_, Cluster> {
     // For each bin the place of its sums plus one; most bins stay empty.
     let mut place = [0_u16; BINS * BINS * BINS];
-    let mut sums: Vec<(usize, [u32; 4])> = Vec::with_capacity(128);
+    let mut sums: List<'_, (usize, [u32; 4])> = List::with_capacity_in(128, memory);
     for [r, g, b] in pixels {
         let bin = [r, g, b].iter().fold(0, |at, &level| at * BINS + usize::from(level >> 4));
         if place[bin] == 0 {
@@ -78,11 +84,11 @@ fn filled_bins(pixels: impl Iterator<Item = [u8; 3]>) -> Vec<Cluster> {
         mean: [r, g, b].map(|s| s as f32 / n as f32),
         pixels: n,
     };
-    sums.into_iter().map(cluster).collect()
+    sums.into_iter().map(cluster).collect_in(memory)
 }
 
-fn leaders(bins: &[Cluster], radius: f32, limit: usize) -> Vec<Cluster> {
-    let mut clusters: Vec<Cluster> = Vec::with_capacity(limit);
+fn leaders<'m>(memory: &'m Memory, bins: &[Cluster], radius: f32, limit: usize) -> List<'m, Cluster> {
+    let mut clusters: List<'_, Cluster> = List::with_capacity_in(limit, memory);
     for bin in bins {
         let near = nearest(&clusters, bin.mean).is_some_and(|(_, d2)| d2 <= radius * radius);
         if !near && clusters.len() < limit {
@@ -92,8 +98,8 @@ fn leaders(bins: &[Cluster], radius: f32, limit: usize) -> Vec<Cluster> {
     clusters
 }
 
-fn settle(clusters: &mut [Cluster], bins: &[Cluster]) {
-    let mut sums = vec![([0.0_f64; 3], 0_u32); clusters.len()];
+fn settle(memory: &Memory, clusters: &mut [Cluster], bins: &[Cluster]) {
+    let sums = memory.alloc_slice_fill_copy(clusters.len(), ([0.0_f64; 3], 0_u32));
     for bin in bins {
         if let Some((at, _)) = nearest(clusters, bin.mean) {
             let (sum, pixels) = &mut sums[at];
@@ -103,9 +109,10 @@ fn settle(clusters: &mut [Cluster], bins: &[Cluster]) {
             *pixels += bin.pixels;
         }
     }
-    for (cluster, (sum, pixels)) in clusters.iter_mut().zip(sums) {
-        if pixels > 0 {
-            *cluster = Cluster { mean: sum.map(|s| (s / f64::from(pixels)) as f32), pixels };
+    for (cluster, (sum, pixels)) in clusters.iter_mut().zip(sums.iter()) {
+        if *pixels > 0 {
+            let mean = sum.map(|s| (s / f64::from(*pixels)) as f32);
+            *cluster = Cluster { mean, pixels: *pixels };
         }
     }
 }
@@ -116,10 +123,11 @@ mod tests {
 
     #[test]
     fn two_colours_make_two_clusters_whatever_their_order() {
+        let memory = Memory::new();
         let red = std::iter::repeat_n([200, 30, 20], 300);
         let blue = std::iter::repeat_n([30, 60, 180], 100);
-        let one_way = palette(red.clone().chain(blue.clone()), 24.0, 8);
-        let other_way = palette(blue.chain(red), 24.0, 8);
+        let one_way = palette(&memory, red.clone().chain(blue.clone()), 24.0, 8);
+        let other_way = palette(&memory, blue.chain(red), 24.0, 8);
         assert_eq!(one_way, other_way);
         assert_eq!(one_way.iter().map(|c| c.pixels).collect::<Vec<_>>(), [300, 100]);
         assert_eq!(one_way[0].mean, [200.0, 30.0, 20.0]);
@@ -127,7 +135,7 @@ mod tests {
 
     #[test]
     fn no_pixels_make_no_clusters() {
-        assert!(palette(std::iter::empty(), 24.0, 8).is_empty());
+        assert!(palette(&Memory::new(), std::iter::empty(), 24.0, 8).is_empty());
         assert_eq!(nearest(&[], [0.0; 3]), None);
     }
 }

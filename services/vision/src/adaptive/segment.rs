@@ -5,6 +5,7 @@
 //! be lighter or darker along its own shading line.
 
 use super::likeness::Likeness;
+use super::memory::List;
 use super::palette::{Cluster, levels, palette};
 use super::patch::Patch;
 use super::shadow::{self, Cast, Shade};
@@ -36,15 +37,20 @@ pub(crate) enum Parts {
 }
 
 /// An object told from its background.
-pub(crate) struct Segmented {
-    pub(crate) object: Patch,
+pub(crate) struct Segmented<'s> {
+    pub(crate) object: Patch<'s>,
     /// Whether it is but the shadow of something on what lies around it.
     pub(crate) is_shadow: bool,
 }
 
 /// The pixels of the object that `seed` is part of, without the shadow that it casts. The seed's rectangle must leave room
 /// around it.
-pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Parts) -> Option<Segmented> {
+pub(crate) fn object<'s>(
+    frame: &Frame,
+    seed: &Patch<'s>,
+    likeness: &Likeness<'_>,
+    parts: Parts,
+) -> Option<Segmented<'s>> {
     let surfaces = background_colours(frame, seed, &seed.dilated(reach_px(seed)), likeness);
     let object = grown(frame, seed, &surfaces, None, parts)?;
     // Signs stand above the ground.
@@ -62,18 +68,19 @@ pub(crate) fn object(frame: &Frame, seed: &Patch, likeness: &Likeness, parts: Pa
 }
 
 /// The pixels around `seed` that are nearer to its colours than to those of the `surfaces` around it.
-fn grown(
+fn grown<'s>(
     frame: &Frame,
-    seed: &Patch,
+    seed: &Patch<'s>,
     surfaces: &[Cluster],
-    cast: Option<&Cast>,
+    cast: Option<&Cast<'_>>,
     parts: Parts,
-) -> Option<Patch> {
+) -> Option<Patch<'s>> {
     let near = seed.dilated(reach_px(seed));
     let own = Shaded::new(&object_colours(frame, seed));
     let others = Plain::new(surfaces);
     let sure = seed.eroded(2);
-    let sure_shadow = cast.map_or_else(|| Patch::empty(seed.rect), |cast| cast.patch.eroded(1));
+    let sure_shadow =
+        cast.map_or_else(|| Patch::empty(seed.memory(), seed.rect), |cast| cast.patch.eroded(1));
     // What lies well inside the seed needs no asking: its colours are the object's.
     let asked = near.without(&sure).without(&sure_shadow).only(|x, y| {
         let color = levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32));
@@ -92,7 +99,7 @@ fn grown(
 }
 
 /// How far beyond a seed the object may reach.
-fn reach_px(seed: &Patch) -> i32 {
+fn reach_px(seed: &Patch<'_>) -> i32 {
     (0.3 * (seed.count() as f32).sqrt()).ceil().max(2.0) as i32
 }
 
@@ -105,17 +112,22 @@ pub(crate) fn surroundings(bounds: RectPx, frame: &Frame) -> RectPx {
     RectPx { x, y, width, height }
 }
 
-fn object_colours(frame: &Frame, seed: &Patch) -> Vec<Cluster> {
+fn object_colours<'s>(frame: &Frame, seed: &Patch<'s>) -> List<'s, Cluster> {
     let core = seed.eroded(1);
     let core = if 3 * core.count() >= seed.count() { &core } else { seed };
-    let mut colours = palette(sampled(frame, core, PALETTE_SAMPLES), RADIUS, OBJECT_COLOURS);
+    let mut colours = palette(seed.memory(), sampled(frame, core, PALETTE_SAMPLES), RADIUS, OBJECT_COLOURS);
     let all: u32 = colours.iter().map(|cluster| cluster.pixels).sum();
     colours.retain(|cluster| 25 * cluster.pixels >= all);
     colours
 }
 
 /// Colours around the seed that are not the landmark's own, nor mixtures with those of a lit face beside the seed.
-fn background_colours(frame: &Frame, seed: &Patch, near: &Patch, likeness: &Likeness) -> Vec<Cluster> {
+fn background_colours<'s>(
+    frame: &Frame,
+    seed: &Patch<'s>,
+    near: &Patch<'_>,
+    likeness: &Likeness<'_>,
+) -> List<'s, Cluster> {
     let foreign = |pixel: &[u8; 3]| !likeness.matches(*pixel) && !likeness.is_lit_face(*pixel);
     let ring = near.without(&seed.dilated(2));
     let lit =
@@ -123,13 +135,14 @@ fn background_colours(frame: &Frame, seed: &Patch, near: &Patch, likeness: &Like
     let clear = ring.without(&lit.dilated(2));
     // A sign has one face, and lettering of any colour.
     let ring = if likeness.face().is_none() && 3 * clear.count() >= ring.count() { clear } else { ring };
-    palette(sampled(frame, &ring, PALETTE_SAMPLES).filter(foreign), RADIUS, BACKGROUND_COLOURS)
+    let seen = sampled(frame, &ring, PALETTE_SAMPLES).filter(foreign);
+    palette(seed.memory(), seen, RADIUS, BACKGROUND_COLOURS)
 }
 
 /// Pixels of a patch, evenly thinned out to about `samples` where there are many.
 pub(super) fn sampled<'a>(
     frame: &'a Frame,
-    patch: &'a Patch,
+    patch: &'a Patch<'_>,
     samples: usize,
 ) -> impl Iterator<Item = [u8; 3]> + 'a {
     let step = (patch.count() / samples).max(1);

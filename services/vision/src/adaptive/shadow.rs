@@ -6,6 +6,7 @@
 //! penumbras change.
 
 use super::likeness::Likeness;
+use super::memory::{CollectIn, List};
 use super::palette::{Cluster, dot, levels, minus};
 use super::patch::{Patch, polygon_area_and_centroid};
 use crate::frame::Frame;
@@ -36,17 +37,17 @@ const BLUR_PX: i32 = 2;
 const ROUNDS: usize = 2;
 
 /// A shadow in a seed.
-pub(super) struct Cast {
+pub(super) struct Cast<'s> {
     /// Its pixels.
-    pub(super) patch: Patch,
+    pub(super) patch: Patch<'s>,
     /// The seed without it.
-    pub(super) rest: Patch,
+    pub(super) rest: Patch<'s>,
     /// Colour of the shadow and of the surface, levels.
     shadow: [f32; 3],
     surface: [f32; 3],
 }
 
-impl Cast {
+impl Cast<'_> {
     /// Squared distance of a colour from the nearest mixture of shadow and surface, levels².
     pub(super) fn distance2(&self, color: [f32; 3]) -> f32 {
         let (along, from) = (minus(self.surface, self.shadow), minus(color, self.shadow));
@@ -57,37 +58,44 @@ impl Cast {
 }
 
 /// What of an object is but a shadow on one of the surfaces around it.
-pub(super) enum Shade {
+pub(super) enum Shade<'s> {
     None,
     /// A part beside the object itself.
-    Part(Cast),
+    Part(Cast<'s>),
     /// Next to all: what casts it is elsewhere, or out of the picture.
     All,
 }
 
 /// The shadow in `seed`, an object as it was found, on one of the `surfaces` around it.
-pub(super) fn shade(frame: &Frame, seed: &Patch, likeness: &Likeness, surfaces: &[Cluster]) -> Shade {
-    let own: Vec<[f32; 3]> = likeness.shades().map(unit).collect();
+pub(super) fn shade<'s>(
+    frame: &Frame,
+    seed: &Patch<'s>,
+    likeness: &Likeness<'_>,
+    surfaces: &[Cluster],
+) -> Shade<'s> {
+    let memory = seed.memory();
+    let own: List<'_, [f32; 3]> = likeness.shades().map(unit).collect_in(memory);
     let all: u32 = surfaces.iter().map(|surface| surface.pixels).sum();
     let large = |surface: &&Cluster| {
         surface.pixels as f32 >= LEAST_SURFACE * all as f32
             && dot(surface.mean, surface.mean) >= LEAST_LIGHT.powi(2)
     };
-    let glimpse: Vec<[f32; 3]> =
-        seed.set_places().step_by(GLIMPSE).map(|place| color_at(frame, seed, place)).collect();
+    let glimpse: List<'_, [f32; 3]> =
+        seed.set_places().step_by(GLIMPSE).map(|place| color_at(frame, seed, place)).collect_in(memory);
     let shows = |surface: &Surface| {
         let shaded = glimpse.iter().filter(|color| surface.may_be_shaded(**color, &own)).count();
         2.0 * shaded as f32 >= PART.0 * glimpse.len() as f32
     };
-    let surfaces: Vec<Surface> = surfaces.iter().filter(large).map(Surface::of).filter(shows).collect();
+    let surfaces = surfaces.iter().filter(large).map(Surface::of).filter(shows);
+    let surfaces: List<'_, Surface> = surfaces.collect_in(memory);
     if surfaces.is_empty() {
         return Shade::None;
     }
     let pixels = smoothed(frame, seed);
-    let mut largest: Option<Cast> = None;
+    let mut largest: Option<Cast<'_>> = None;
     for surface in surfaces {
-        let is_cast: Vec<bool> =
-            pixels.iter().map(|pixel| surface.may_be_shaded(pixel.color, &own)).collect();
+        let is_cast = pixels.iter().map(|pixel| surface.may_be_shaded(pixel.color, &own));
+        let is_cast: List<'_, bool> = is_cast.collect_in(memory);
         let counted = is_cast.iter().filter(|cast| **cast).count();
         if counted as f32 >= NEXT_TO_ALL * pixels.len() as f32 {
             return Shade::All;
@@ -123,7 +131,7 @@ impl Surface {
     }
 
     /// Settles what is shadow and what is object from a first guess.
-    fn split(&self, pixels: &[Pixel], mut is_cast: Vec<bool>) -> Option<Split> {
+    fn split<'s>(&self, pixels: &[Pixel], mut is_cast: List<'s, bool>) -> Option<Split<'s>> {
         let mut colours = None;
         for _ in 0..ROUNDS {
             let mean_of = |wanted: bool| {
@@ -150,21 +158,21 @@ impl Surface {
 }
 
 /// Which pixels of an object are shadow.
-struct Split {
-    is_cast: Vec<bool>,
+struct Split<'s> {
+    is_cast: List<'s, bool>,
     /// The shadow's colour.
     shadow: [f32; 3],
     /// Direction of the object's colour.
     object: [f32; 3],
 }
 
-impl Split {
+impl<'s> Split<'s> {
     /// The shadow, where it stands apart from the object and the object is rounder without it.
-    fn cast(&self, seed: &Patch, pixels: &[Pixel], surface: &Surface) -> Option<Cast> {
+    fn cast(&self, seed: &Patch<'s>, pixels: &[Pixel], surface: &Surface) -> Option<Cast<'s>> {
         if self.separation(pixels) < LEAST_SEPARATION {
             return None;
         }
-        let mut patch = Patch::empty(seed.rect);
+        let mut patch = Patch::empty(seed.memory(), seed.rect);
         let those = pixels.iter().zip(&self.is_cast).filter(|(_, cast)| **cast);
         those.for_each(|(pixel, _)| patch.set(pixel.x, pixel.y));
         let patch = patch.opened(1);
@@ -179,11 +187,12 @@ impl Split {
         let line = unit(self.shadow);
         let of = |wanted: bool| {
             let those = pixels.iter().zip(&self.is_cast).filter(|(_, cast)| **cast == wanted);
-            let nearer: Vec<f32> =
-                those.map(|(pixel, _)| aside(pixel.color, line) - aside(pixel.color, self.object)).collect();
-            let middle = median(nearer.clone());
+            let nearer = those.map(|(pixel, _)| aside(pixel.color, line) - aside(pixel.color, self.object));
+            let mut nearer: List<'_, f32> = nearer.collect_in(self.is_cast.bump());
+            let middle = median(&mut nearer);
+            nearer.iter_mut().for_each(|value| *value = (*value - middle).abs());
             // Half of a normal distribution lies within 0.67 standard deviations.
-            (middle, median(nearer.into_iter().map(|value| (value - middle).abs()).collect()) / 0.67)
+            (middle, median(&mut nearer) / 0.67)
         };
         let ((object, object_spread), (shadow, shadow_spread)) = (of(false), of(true));
         (object - shadow) / (object_spread + shadow_spread).max(0.1)
@@ -194,19 +203,19 @@ fn largest_tint(shadow: [f32; 3]) -> f32 {
     LARGEST_TINT * dot(shadow, shadow).sqrt()
 }
 
-fn median(mut values: Vec<f32>) -> f32 {
+fn median(values: &mut [f32]) -> f32 {
     values.sort_unstable_by(f32::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// What remains of the seed without the shadow and the blur around it; `None` where there is next to no shadow.
-fn remains(seed: &Patch, shadow: &Patch) -> Option<Patch> {
+fn remains<'s>(seed: &Patch<'s>, shadow: &Patch<'_>) -> Option<Patch<'s>> {
     let worth = shadow.count() as f32 >= PART.0 * seed.count() as f32;
     let bare = worth.then(|| seed.without(&shadow.dilated(BLUR_PX)).opened(1))?;
     bare.parts_overlapping(seed, 1.0)
 }
 
-fn solidity(patch: &Patch) -> f32 {
+fn solidity(patch: &Patch<'_>) -> f32 {
     let hull = polygon_area_and_centroid(&patch.hull()).map_or(0.0, |(area, _)| area);
     patch.count() as f32 / hull.max(1.0)
 }
@@ -218,13 +227,13 @@ struct Pixel {
     color: [f32; 3],
 }
 
-fn smoothed(frame: &Frame, seed: &Patch) -> Vec<Pixel> {
+fn smoothed<'s>(frame: &Frame, seed: &Patch<'s>) -> List<'s, Pixel> {
     let pixel = |(x, y)| Pixel { x, y, color: mean_around(frame, seed, x, y) };
-    seed.set_places().map(pixel).collect()
+    seed.set_places().map(pixel).collect_in(seed.memory())
 }
 
 /// Mean colour of a pixel of the seed and those of its eight neighbours that are too.
-fn mean_around(frame: &Frame, seed: &Patch, x: i32, y: i32) -> [f32; 3] {
+fn mean_around(frame: &Frame, seed: &Patch<'_>, x: i32, y: i32) -> [f32; 3] {
     let (mut sum, mut n) = ([0_u32; 3], 0_u32);
     for v in y - 1..=y + 1 {
         let mut bits = seed.bits_from(x - 1, v) & 0b111;
@@ -244,7 +253,7 @@ fn mean_around(frame: &Frame, seed: &Patch, x: i32, y: i32) -> [f32; 3] {
     sum.map(|total| total as f32 / n.max(1) as f32)
 }
 
-fn color_at(frame: &Frame, seed: &Patch, (x, y): (i32, i32)) -> [f32; 3] {
+fn color_at(frame: &Frame, seed: &Patch<'_>, (x, y): (i32, i32)) -> [f32; 3] {
     levels(frame.pixel(seed.rect.x + x as u32, seed.rect.y + y as u32))
 }
 

@@ -29,7 +29,7 @@ pub(crate) enum Edge {
 }
 
 /// Centre of gravity and area of the object with soft edges; `None` of nothing.
-pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch, edge: Edge) -> Option<(PointPx, f32)> {
+pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch<'_>, edge: Edge) -> Option<(PointPx, f32)> {
     let inside = object.eroded(2);
     let inside = if inside.count() >= 6 { inside } else { object.eroded(1) };
     let inner = object.eroded(1);
@@ -50,7 +50,7 @@ pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch, edge: Edge) -> Op
 /// sides where it can be seen.
 pub(crate) fn within_border(
     frame: &Frame,
-    object: &Patch,
+    object: &Patch<'_>,
     (own, border): ([f32; 3], [f32; 3]),
     width_px: i32,
 ) -> Option<(PointPx, f32)> {
@@ -83,7 +83,7 @@ struct Moments {
 
 impl Moments {
     /// Of pixels that count wholly.
-    fn of(pixels: &Patch) -> Self {
+    fn of(pixels: &Patch<'_>) -> Self {
         let mut moments = Self { weight: 0.0, x: 0.0, y: 0.0 };
         pixels.set_places().for_each(|place| moments.add(place, 1.0));
         moments
@@ -97,7 +97,7 @@ impl Moments {
     }
 
     /// Centre of gravity in frame pixels, of pixels of `patch`; `None` of nothing.
-    fn centre_in(&self, patch: &Patch) -> Option<PointPx> {
+    fn centre_in(&self, patch: &Patch<'_>) -> Option<PointPx> {
         let (x, y) =
             (f64::from(patch.rect.x) + self.x / self.weight, f64::from(patch.rect.y) + self.y / self.weight);
         (self.weight > 0.0).then(|| PointPx::new(x as f32, y as f32))
@@ -107,9 +107,9 @@ impl Moments {
 /// Where only the object and where only the background shows.
 struct Pure<'a> {
     frame: &'a Frame,
-    object: &'a Patch,
-    inside: &'a Patch,
-    background: &'a Patch,
+    object: &'a Patch<'a>,
+    inside: &'a Patch<'a>,
+    background: &'a Patch<'a>,
 }
 
 impl Pure<'_> {
@@ -182,7 +182,7 @@ const NEARNESS: [[f32; SPAN]; SPAN] = {
 const SPAN: usize = 2 * REACH as usize + 1;
 
 /// Mean colour of the pixels of `pure` around a place.
-fn local_mean(frame: &Frame, pure: &Patch, (x, y): (i32, i32)) -> Option<[f32; 3]> {
+fn local_mean(frame: &Frame, pure: &Patch<'_>, (x, y): (i32, i32)) -> Option<[f32; 3]> {
     let (mut sum, mut n) = ([0.0_f32; 3], 0.0_f32);
     for (row, v) in (y - REACH..=y + REACH).enumerate() {
         let bits = pure.bits_from(x - REACH, v) & ((1 << SPAN) - 1);

@@ -18,7 +18,7 @@ struct Window {
 
 /// The window on the object that is nearest to the descriptor, and its statistics. Its side follows the object's, and
 /// is halved where nothing that large shows one of the shades: the landmark's colour may be but a frame around lettering.
-pub(super) fn best(search: &Search<'_>, object: &Patch, area_px2: f32) -> Option<(u16, ColorStats)> {
+pub(super) fn best(search: &Search<'_>, object: &Patch<'_>, area_px2: f32) -> Option<(u16, ColorStats)> {
     let mut side_px = ((0.42 * area_px2.sqrt()) as i32).clamp(1, LARGEST_WINDOW_2X / 2);
     let least_px = (i32::from(search.landmark.window_px.width) / 4).max(2);
     let mut best = window_of_side(search, object, side_px);
@@ -31,7 +31,7 @@ pub(super) fn best(search: &Search<'_>, object: &Patch, area_px2: f32) -> Option
 }
 
 /// The best window of that side.
-fn window_of_side(search: &Search<'_>, object: &Patch, side_px: i32) -> Option<Window> {
+fn window_of_side(search: &Search<'_>, object: &Patch<'_>, side_px: i32) -> Option<Window> {
     let step = (side_px / 2).max(1);
     let mut best: Option<(f32, ColorStats)> = None;
     let bounds = object.bounds()?;
@@ -62,12 +62,12 @@ impl Window {
     }
 }
 
-fn window_stats(search: &Search<'_>, object: &Patch, (x, y): (i32, i32), side: i32) -> ColorStats {
+fn window_stats(search: &Search<'_>, object: &Patch<'_>, (x, y): (i32, i32), side: i32) -> ColorStats {
     stats(search, object, (y..y + side).flat_map(|v| (x..x + side).map(move |u| (u, v))))
 }
 
 /// Mean and population variance of these places of the object's patch.
-fn stats(search: &Search<'_>, object: &Patch, places: impl Iterator<Item = (i32, i32)>) -> ColorStats {
+fn stats(search: &Search<'_>, object: &Patch<'_>, places: impl Iterator<Item = (i32, i32)>) -> ColorStats {
     let (mut n, mut sum, mut squares) = (0.0_f32, [0.0_f32; 3], [0.0_f32; 3]);
     for (x, y) in places {
         let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);

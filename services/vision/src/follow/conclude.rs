@@ -1,9 +1,11 @@
 //! One landmark in one frame: what was found updates what is known, and becomes the outcome.
 
 use super::pursue::Pursuit;
+use super::report::Report;
 use super::state::{LandmarkState, Motion, Track};
-use super::{Scene, reason, report};
-use crate::adaptive::{Candidate, Likeness, Tracer};
+use super::{Scene, reason};
+use crate::adaptive::memory::List;
+use crate::adaptive::{Candidate, Tracer};
 use crate::gate::innovation_gate;
 use crate::landmark::Landmark;
 use crate::outcome::{Adaptation, LandmarkOutcome, Miss, Prediction, Sighting};
@@ -27,43 +29,37 @@ const DOUBTFUL_SCORE: f32 = 0.6;
 /// Further objects are given up after so many frames unseen; the last one never is.
 const GIVE_UP_AFTER: u32 = 45;
 
-/// The outcome of a landmark that is not looked for in this frame.
-pub(super) fn skipped(landmark: &Landmark, instance: u32) -> LandmarkOutcome {
-    report::missed(landmark, instance, Miss::Skipped)
-}
-
-/// Updates the tracks and says what was found.
-pub(super) fn conclude(
+/// Updates the tracks and reports what was found.
+pub(super) fn conclude<'m>(
     scene: &Scene<'_>,
     landmark: &Landmark,
     state: &mut LandmarkState,
-    pursuits: Vec<Pursuit>,
-    further: Vec<Candidate>,
+    (pursuits, further): (List<'m, Pursuit<'m>>, List<'m, Candidate<'m>>),
     tracer: &mut Tracer,
-) -> Vec<LandmarkOutcome> {
-    let mut outcomes = Vec::new();
+    mut report: Report<'_>,
+) {
     let mut best_score = 0.0_f32;
     for (track, pursuit) in state.tracks.iter_mut().zip(pursuits) {
         best_score = best_score.max(pursuit.found.as_ref().map_or(0.0, |found| found.score));
-        outcomes.push(advance(scene, landmark, track, pursuit, tracer));
+        let outcome = advance(scene, landmark, track, pursuit, tracer, &mut report);
+        report.outcomes.push(outcome);
     }
-    welcome(scene, landmark, state, further, best_score, tracer, &mut outcomes);
+    welcome(scene, landmark, state, (further, best_score), tracer, &mut report);
     forget(state);
-    if outcomes.is_empty() {
-        outcomes.push(report::missed(landmark, 0, Miss::NoColour { best: None }));
+    if report.outcomes.is_empty() {
+        let outcome = report.missed(landmark, 0, Miss::NoColour { best: None });
+        report.outcomes.push(outcome);
     }
-    outcomes
 }
 
-/// Takes up objects that were not known before.
+/// Takes up objects that were not known before, beside those of which the best has that score.
 fn welcome(
     scene: &Scene<'_>,
     landmark: &Landmark,
     state: &mut LandmarkState,
-    further: Vec<Candidate>,
-    mut best_score: f32,
+    (further, mut best_score): (List<'_, Candidate<'_>>, f32),
     tracer: &mut Tracer,
-    outcomes: &mut Vec<LandmarkOutcome>,
+    report: &mut Report<'_>,
 ) {
     let usual = usual_look(state);
     let least_size = if landmark.shape.is_sign() { FURTHER_SIGN_SIZE } else { FURTHER_SIZE };
@@ -80,7 +76,8 @@ fn welcome(
             continue;
         }
         if state.tracks.len() >= scene.options.max_instances as usize {
-            outcomes.push(skipped(landmark, state.next_instance));
+            let outcome = report.missed(landmark, state.next_instance, Miss::Skipped);
+            report.outcomes.push(outcome);
             break;
         }
         let rival = next.peek().map_or(0.0, |next| next.score);
@@ -91,14 +88,14 @@ fn welcome(
         } else {
             scene.options.shape_veto
         };
-        let outcome = match describe(landmark, &candidate, veto, rival, tracer) {
-            Ok(sighting) => begin(scene, landmark, state, &candidate, sighting),
+        let outcome = match describe(landmark, &candidate, (veto, rival), tracer, report) {
+            Ok(sighting) => begin(scene, landmark, state, &candidate, sighting, report),
             Err(_) if further => continue,
-            Err(miss) => report::missed(landmark, state.next_instance, miss),
+            Err(miss) => report.missed(landmark, state.next_instance, miss),
         };
         best_score = best_score.max(candidate.score);
         least_score = FURTHER_SCORE;
-        outcomes.push(outcome);
+        report.outcomes.push(outcome);
     }
 }
 
@@ -130,12 +127,13 @@ fn advance(
     scene: &Scene<'_>,
     landmark: &Landmark,
     track: &mut Track,
-    pursuit: Pursuit,
+    pursuit: Pursuit<'_>,
     tracer: &mut Tracer,
+    report: &mut Report<'_>,
 ) -> LandmarkOutcome {
-    let Pursuit { prediction, gate, found, rival, full_frame, elsewhere } = pursuit;
-    let veto = scene.options.shape_veto;
-    let outcome = match found.map(|found| (describe(landmark, &found, veto, rival, tracer), found)) {
+    let Pursuit { prediction, gate, likeness, found, rival, full_frame, elsewhere } = pursuit;
+    let judged = (scene.options.shape_veto, rival);
+    let outcome = match found.map(|found| (describe(landmark, &found, judged, tracer, report), found)) {
         Some((Ok(sighting), found)) => {
             let fix = Fix { area_px2: whole_area_px2(&found, &prediction), ..fix(scene, &found) };
             let astray = full_frame && !innovation_gate(&prediction).contains(found.centroid);
@@ -143,25 +141,24 @@ fn advance(
             LandmarkOutcome {
                 innovation_px: Some(prediction.centroid.distance_px(found.centroid)),
                 adaptation: Some(adaptation(scene, &found, full_frame)),
-                ..report::measured(landmark, track.instance, sighting)
+                ..report.measured(landmark, track.instance, sighting)
             }
         }
         Some((Err(miss), _)) => {
             track.misses = track.misses.saturating_add(1);
-            report::missed(landmark, track.instance, miss)
+            report.missed(landmark, track.instance, miss)
         }
         None => {
             track.misses = track.misses.saturating_add(1);
-            let likeness = Likeness::followed(landmark, track.light(), scene.noise_variance);
             let miss = reason::of_miss(scene, track, &likeness, &prediction, &gate, elsewhere);
-            report::missed(landmark, track.instance, miss)
+            report.missed(landmark, track.instance, miss)
         }
     };
     LandmarkOutcome { prediction: Some(prediction), gate: Some(gate), ..outcome }
 }
 
 /// The area of the whole object, of which only a part may be in view.
-fn whole_area_px2(found: &Candidate, prediction: &Prediction) -> f32 {
+fn whole_area_px2(found: &Candidate<'_>, prediction: &Prediction) -> f32 {
     if found.cut { found.area_px2.max(prediction.area_px2) } else { found.area_px2 }
 }
 
@@ -169,50 +166,51 @@ fn begin(
     scene: &Scene<'_>,
     landmark: &Landmark,
     state: &mut LandmarkState,
-    found: &Candidate,
+    found: &Candidate<'_>,
     sighting: Sighting,
+    report: &mut Report<'_>,
 ) -> LandmarkOutcome {
     let predictor = Predictor::new(scene.options.prediction, fix(scene, found));
     let instance = state.begin(predictor, found.light, found.score).instance;
     LandmarkOutcome {
         adaptation: Some(adaptation(scene, found, true)),
-        ..report::measured(landmark, instance, sighting)
+        ..report.measured(landmark, instance, sighting)
     }
 }
 
-fn fix(scene: &Scene<'_>, found: &Candidate) -> Fix {
+fn fix(scene: &Scene<'_>, found: &Candidate<'_>) -> Fix {
     Fix { captured_at: scene.captured_at, centroid: found.centroid, area_px2: found.area_px2 }
 }
 
-/// All that is reported of an object.
+/// All that is reported of an object, which has a rival of that score.
 ///
 /// # Errors
 /// When its outline is of another shape and `veto` rules that out.
 fn describe(
     landmark: &Landmark,
-    found: &Candidate,
-    veto: ShapeVeto,
-    rival: f32,
+    found: &Candidate<'_>,
+    (veto, rival): (ShapeVeto, f32),
     tracer: &mut Tracer,
+    report: &mut Report<'_>,
 ) -> Result<Sighting, Miss> {
-    let traced = tracer.trace(&found.object, landmark.shape);
-    if veto.rules_out(traced.shape_score) {
-        return Err(Miss::WrongShape { score: traced.shape_score.unwrap_or(0.0) });
+    let mut sighting = report.workspace.spare_sighting();
+    tracer.trace(&found.object, landmark.shape, &mut sighting);
+    if veto.rules_out(sighting.shape_score) {
+        let score = sighting.shape_score.unwrap_or(0.0);
+        report.workspace.recycle_sighting(sighting);
+        return Err(Miss::WrongShape { score });
     }
     Ok(Sighting {
         centroid: found.centroid,
         area_px2: found.area_px2,
-        mask_area_2x: traced.mask_area_2x,
-        outline: traced.outline,
-        segments: traced.segments,
-        shape_score: traced.shape_score,
         observed: found.observed,
         score: found.score,
         distinctness: (1.0 - rival / found.score.max(1e-3)).clamp(0.0, 1.0),
+        ..sighting
     })
 }
 
-fn adaptation(scene: &Scene<'_>, found: &Candidate, full_frame: bool) -> Adaptation {
+fn adaptation(scene: &Scene<'_>, found: &Candidate<'_>, full_frame: bool) -> Adaptation {
     Adaptation {
         gain: found.light.gain,
         haze: found.light.haze,

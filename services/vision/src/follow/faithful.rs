@@ -2,26 +2,18 @@
 //! only numbers the instances and is reported as the prior.
 
 use super::Scene;
-use super::report::{self, Ids};
+use super::report::Report;
 use super::state::{LandmarkState, Track};
 use crate::adaptive::Light;
 use crate::gate::search_gate;
 use crate::landmark::Landmark;
 use crate::outcome::{LandmarkOutcome, Miss, Prediction, Sighting};
 use crate::predict::{Fix, Predictor};
-use crate::register::Workspace;
 
 /// A further object of the same landmark needs this part of the best one's score.
 const FURTHER_PART: f32 = 0.75;
 /// Objects unseen for so many frames are forgotten.
 const GIVE_UP_AFTER: u32 = 45;
-
-/// Where what was found of a landmark goes, and memory for it.
-pub(super) struct Found<'a> {
-    pub(super) outcomes: &'a mut Vec<LandmarkOutcome>,
-    pub(super) ids: &'a mut Ids,
-    pub(super) workspace: &'a mut Workspace,
-}
 
 /// Updates what is known of one landmark by what was seen of it.
 pub(super) fn landmark(
@@ -29,33 +21,34 @@ pub(super) fn landmark(
     landmark: &Landmark,
     state: &mut LandmarkState,
     seen: Result<Vec<Sighting>, Miss>,
-    found: Found<'_>,
+    mut report: Report<'_>,
 ) {
-    let Found { outcomes, ids, workspace } = found;
     let miss = seen.as_ref().err().copied().unwrap_or(Miss::NoColour { best: None });
     let mut seen = seen.unwrap_or_default();
     let least = FURTHER_PART * seen.first().map_or(0.0, |best| best.score);
     let kept = seen.iter().take_while(|sighting| sighting.score >= least).count();
     let kept = kept.min(scene.options.max_instances as usize);
-    seen.drain(kept..).for_each(|sighting| workspace.recycle_sighting(sighting));
+    seen.drain(kept..).for_each(|sighting| report.workspace.recycle_sighting(sighting));
     for track in &mut state.tracks {
         let prediction = track.predictor.predict(scene.captured_at);
         let outcome = match take_nearest(&prediction, &mut seen) {
-            Some(sighting) => advance(scene, landmark, track, &prediction, sighting, ids),
+            Some(sighting) => advance(scene, landmark, track, &prediction, sighting, &mut report),
             None => {
                 track.misses += 1;
-                report::missed_by(ids, landmark, track.instance, miss)
+                report.missed(landmark, track.instance, miss)
             }
         };
-        outcomes.push(LandmarkOutcome { prediction: Some(prediction), ..outcome });
+        report.outcomes.push(LandmarkOutcome { prediction: Some(prediction), ..outcome });
     }
     state.tracks.retain(|track| track.misses < GIVE_UP_AFTER);
     for sighting in seen.drain(..) {
-        outcomes.push(begin(scene, landmark, state, sighting, ids));
+        let outcome = begin(scene, landmark, state, sighting, &mut report);
+        report.outcomes.push(outcome);
     }
-    workspace.recycle(seen);
-    if outcomes.is_empty() {
-        outcomes.push(report::missed_by(ids, landmark, 0, miss));
+    report.workspace.recycle(seen);
+    if report.outcomes.is_empty() {
+        let outcome = report.missed(landmark, 0, miss);
+        report.outcomes.push(outcome);
     }
 }
 
@@ -74,13 +67,13 @@ fn advance(
     track: &mut Track,
     prediction: &Prediction,
     sighting: Sighting,
-    ids: &mut Ids,
+    report: &mut Report<'_>,
 ) -> LandmarkOutcome {
     track.misses = 0;
     track.sightings += 1;
     track.predictor.update(fix(scene, &sighting));
     let innovation_px = Some(prediction.centroid.distance_px(sighting.centroid));
-    LandmarkOutcome { innovation_px, ..report::measured_by(ids, landmark, track.instance, sighting) }
+    LandmarkOutcome { innovation_px, ..report.measured(landmark, track.instance, sighting) }
 }
 
 fn begin(
@@ -88,11 +81,11 @@ fn begin(
     landmark: &Landmark,
     state: &mut LandmarkState,
     sighting: Sighting,
-    ids: &mut Ids,
+    report: &mut Report<'_>,
 ) -> LandmarkOutcome {
     let predictor = Predictor::new(scene.options.prediction, fix(scene, &sighting));
     let track = state.begin(predictor, Light::AS_LEARNED, sighting.score);
-    report::measured_by(ids, landmark, track.instance, sighting)
+    report.measured(landmark, track.instance, sighting)
 }
 
 fn fix(scene: &Scene<'_>, sighting: &Sighting) -> Fix {

@@ -1,14 +1,16 @@
 //! One landmark in one frame: its known objects in their gates, and the whole frame where one of them is missing.
 
 use super::budget::Budget;
-use super::conclude::{conclude, skipped};
+use super::conclude::conclude;
+use super::report::Report;
 use super::state::{LandmarkState, Track};
 use super::{Scene, Tools};
+use crate::adaptive::memory::{List, Memory, sorted};
 use crate::adaptive::{Candidate, Finder, Likeness};
 use crate::gate::search_gate;
 use crate::geometry::{PointPx, RectPx};
 use crate::landmark::Landmark;
-use crate::outcome::{Gate, LandmarkOutcome, Prediction};
+use crate::outcome::{Gate, Miss, Prediction};
 use crate::probe::{Stage, StageProbe};
 
 /// One that is followed needs this part of its usual score.
@@ -39,10 +41,11 @@ enum Company {
 }
 
 /// One followed object in this frame.
-pub(super) struct Pursuit {
+pub(super) struct Pursuit<'m> {
     pub(super) prediction: Prediction,
     pub(super) gate: Gate,
-    pub(super) found: Option<Candidate>,
+    pub(super) likeness: Likeness<'m>,
+    pub(super) found: Option<Candidate<'m>>,
     /// The best score of what was not taken for it.
     pub(super) rival: f32,
     pub(super) full_frame: bool,
@@ -50,7 +53,7 @@ pub(super) struct Pursuit {
     pub(super) elsewhere: Option<PointPx>,
 }
 
-fn seeds(landmark: &Landmark, likeness: &Likeness) -> (usize, usize) {
+fn seeds(landmark: &Landmark, likeness: &Likeness<'_>) -> (usize, usize) {
     let several = landmark.shape.is_round() || landmark.shape.is_board();
     if several && likeness.face().is_some() { LETTERED_SIGN_SEEDS } else { SEEDS }
 }
@@ -62,27 +65,43 @@ pub(super) fn landmark<P: StageProbe>(
     state: &mut LandmarkState,
     budget: &mut Budget,
     tools: &mut Tools,
+    mut report: Report<'_>,
     probe: &mut P,
-) -> Vec<LandmarkOutcome> {
+) {
+    let Tools { finder, tracer, memory } = tools;
+    memory.reset();
+    let memory = &*memory;
     probe.begin(Stage::Mask);
-    let mut pursuits: Vec<Pursuit> = Vec::with_capacity(state.tracks.len());
+    let mut pursuits: List<'_, Pursuit<'_>> = List::with_capacity_in(state.tracks.len(), memory);
     for track in &state.tracks {
-        let pursuit = in_gate(scene, landmark, track, &pursuits, budget, &mut tools.finder);
+        let pursuit = in_gate(scene, landmark, track, &pursuits, budget, finder, memory);
         pursuits.push(pursuit);
     }
     state.frames_since_search = state.frames_since_search.saturating_add(1);
     let lost = pursuits.iter().any(|pursuit| pursuit.found.is_none());
     let room = pursuits.len() < scene.options.max_instances as usize;
     let wanted = pursuits.is_empty() || lost || (room && state.frames_since_search >= SEARCH_EVERY);
-    let further =
-        if wanted { anywhere(scene, landmark, state, budget, &mut tools.finder) } else { Some(Vec::new()) };
+    let further = wanted.then(|| anywhere(scene, landmark, state, budget, finder, memory)).flatten();
     probe.end(Stage::Mask);
-    let Some(mut further) = further else {
-        if pursuits.is_empty() {
-            return vec![skipped(landmark, 0)];
+    let further = match further {
+        Some(further) => shared_out(landmark, state, &mut pursuits, further),
+        None if pursuits.is_empty() => {
+            let outcome = report.missed(landmark, 0, Miss::Skipped);
+            report.outcomes.push(outcome);
+            return;
         }
-        return staged(probe, || conclude(scene, landmark, state, pursuits, Vec::new(), &mut tools.tracer));
+        None => List::new_in(memory),
     };
+    staged(probe, || conclude(scene, landmark, state, (pursuits, further), tracer, report));
+}
+
+/// What the whole frame shows beside the objects that are known; of those, the lost ones are taken up.
+fn shared_out<'m>(
+    landmark: &Landmark,
+    state: &LandmarkState,
+    pursuits: &mut [Pursuit<'m>],
+    mut further: List<'m, Candidate<'m>>,
+) -> List<'m, Candidate<'m>> {
     for found in pursuits.iter().filter_map(|pursuit| pursuit.found.as_ref()) {
         further.retain(|candidate| !found.covers(candidate.centroid) && !candidate.covers(found.centroid));
     }
@@ -91,10 +110,10 @@ pub(super) fn landmark<P: StageProbe>(
         further.retain(|candidate| !lies_on(prediction, candidate));
     }
     let company = if state.next_instance > 1 { Company::Others } else { Company::Alone };
-    for (track, pursuit) in state.tracks.iter().zip(&mut pursuits) {
+    for (track, pursuit) in state.tracks.iter().zip(pursuits) {
         reacquire(track, company, pursuit, &mut further);
     }
-    staged(probe, || conclude(scene, landmark, state, pursuits, further, &mut tools.tracer))
+    further
 }
 
 fn staged<P: StageProbe, T>(probe: &mut P, work: impl FnOnce() -> T) -> T {
@@ -105,55 +124,54 @@ fn staged<P: StageProbe, T>(probe: &mut P, work: impl FnOnce() -> T) -> T {
 }
 
 /// Looks for a followed object where it should be.
-fn in_gate(
+fn in_gate<'m>(
     scene: &Scene<'_>,
     landmark: &Landmark,
     track: &Track,
-    others: &[Pursuit],
+    others: &[Pursuit<'m>],
     budget: &mut Budget,
     finder: &mut Finder,
-) -> Pursuit {
+    memory: &'m Memory,
+) -> Pursuit<'m> {
     let prediction = track.predictor.predict(scene.captured_at);
     let gate = search_gate(&prediction);
+    let likeness = Likeness::followed(memory, landmark, track.light(), scene.noise_variance);
     let mut pursuit =
-        Pursuit { prediction, gate, found: None, rival: 0.0, full_frame: false, elsewhere: None };
+        Pursuit { prediction, gate, likeness, found: None, rival: 0.0, full_frame: false, elsewhere: None };
     let Some(region) = gate.bounds(scene.frame.size()) else { return pursuit };
     if budget.spend(u64::from(region.width) * u64::from(region.height)).is_none() {
         return pursuit;
     }
-    let likeness = Likeness::followed(landmark, track.light(), scene.noise_variance);
-    let mut seen = finder.candidates(&scene.search(
-        landmark,
-        region,
-        &likeness,
-        track.light(),
-        seeds(landmark, &likeness).0,
-    ));
-    let taken = |candidate: &Candidate| {
+    let limit = seeds(landmark, &likeness).0;
+    let mut seen = finder.candidates(&scene.search(landmark, region, likeness, track.light(), limit), memory);
+    let taken = |candidate: &Candidate<'_>| {
         others.iter().filter_map(|other| other.found.as_ref()).any(|found| found.covers(candidate.centroid))
     };
-    let part =
-        |candidate: &&mut Candidate| may_be_covered(track, candidate) && is_within(&prediction, candidate);
+    let part = |candidate: &&mut Candidate<'_>| {
+        may_be_covered(track, candidate) && is_within(&prediction, candidate)
+    };
     seen.iter_mut().filter(part).for_each(Candidate::take_for_a_part);
-    let merit = |candidate: &Candidate| candidate.score * consistency(&prediction, candidate);
+    let merit = |candidate: &Candidate<'_>| candidate.score * consistency(&prediction, candidate);
     // A last sliver at the picture's border is not the object any more.
-    let gone = |candidate: &Candidate| candidate.cut && candidate.area_px2 < SLIVER * track.whole_area_px2;
+    let gone =
+        |candidate: &Candidate<'_>| candidate.cut && candidate.area_px2 < SLIVER * track.whole_area_px2;
     seen.retain(|candidate| gate.contains(candidate.centroid) && !taken(candidate) && !gone(candidate));
-    seen.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
-    pursuit.rival = seen.get(1).map_or(0.0, merit);
-    pursuit.found = seen.into_iter().next().filter(|best| merit(best) >= FOLLOWED_PART * track.score);
+    let mut best_first = sorted(seen, |a, b| merit(b).total_cmp(&merit(a)));
+    let best = best_first.next();
+    pursuit.rival = best_first.next().map_or(0.0, |next| merit(&next));
+    pursuit.found = best.filter(|best| merit(best) >= FOLLOWED_PART * track.score);
     pursuit
 }
 
 /// Whether something may cover a part of the object, so that a candidate is what it leaves in view.
-fn may_be_covered(track: &Track, candidate: &Candidate) -> bool {
+fn may_be_covered(track: &Track, candidate: &Candidate<'_>) -> bool {
     track.sightings >= KNOWN_AFTER
         && candidate.area_px2 < COVERED_PART * track.whole_area_px2
         && candidate.score_if_covered > candidate.score
 }
 
 /// Whether a candidate lies where the object should be: what something leaves of it in view does not reach beyond it.
-fn is_within(prediction: &Prediction, candidate: &Candidate) -> bool {
+fn is_within(prediction: &Prediction, candidate: &Candidate<'_>) -> bool {
     let [xx, _, yy] = prediction.covariance_px2;
     let radius_px = |area_px2: f32| (area_px2 / std::f32::consts::PI).sqrt();
     let reach_px = prediction.centroid.distance_px(candidate.centroid) + radius_px(candidate.area_px2);
@@ -161,13 +179,13 @@ fn is_within(prediction: &Prediction, candidate: &Candidate) -> bool {
 }
 
 /// Whether a candidate is but a piece of the object that is predicted.
-fn lies_on(prediction: &Prediction, candidate: &Candidate) -> bool {
+fn lies_on(prediction: &Prediction, candidate: &Candidate<'_>) -> bool {
     candidate.area_px2 < PIECE * prediction.area_px2
         && prediction.centroid.distance_px(candidate.centroid) < ON_IT * prediction.area_px2.sqrt()
 }
 
 /// How well a candidate continues what was known of the object: its place and its size, 0..1.
-fn consistency(prediction: &Prediction, candidate: &Candidate) -> f32 {
+fn consistency(prediction: &Prediction, candidate: &Candidate<'_>) -> f32 {
     let [xx, _, yy] = prediction.covariance_px2;
     let extent = 0.5 * prediction.area_px2.sqrt();
     let off = prediction.centroid.distance_px(candidate.centroid) / (extent + (xx + yy).sqrt());
@@ -178,24 +196,31 @@ fn consistency(prediction: &Prediction, candidate: &Candidate) -> f32 {
 }
 
 /// Objects that look like the landmark in the whole frame; `None` when the budget does not allow the search.
-fn anywhere(
+fn anywhere<'m>(
     scene: &Scene<'_>,
     landmark: &Landmark,
     state: &mut LandmarkState,
     budget: &mut Budget,
     finder: &mut Finder,
-) -> Option<Vec<Candidate>> {
+    memory: &'m Memory,
+) -> Option<List<'m, Candidate<'m>>> {
     let region = RectPx::whole(scene.frame.size());
     budget.spend(u64::from(region.width) * u64::from(region.height))?;
     state.frames_since_search = 0;
     let light = state.light();
-    let likeness = Likeness::anywhere(landmark, light, scene.noise_variance);
-    Some(finder.candidates(&scene.search(landmark, region, &likeness, light, seeds(landmark, &likeness).1)))
+    let likeness = Likeness::anywhere(memory, landmark, light, scene.noise_variance);
+    let limit = seeds(landmark, &likeness).1;
+    Some(finder.candidates(&scene.search(landmark, region, likeness, light, limit), memory))
 }
 
 /// Takes up a lost object where the whole frame shows one that can be it: far away only where no other one was ever seen
 /// that could be mistaken for it.
-fn reacquire(track: &Track, company: Company, pursuit: &mut Pursuit, further: &mut Vec<Candidate>) {
+fn reacquire<'m>(
+    track: &Track,
+    company: Company,
+    pursuit: &mut Pursuit<'m>,
+    further: &mut List<'m, Candidate<'m>>,
+) {
     if pursuit.found.is_some() {
         return;
     }
@@ -207,15 +232,15 @@ fn reacquire(track: &Track, company: Company, pursuit: &mut Pursuit, further: &m
         Company::Alone => 2.0 * size_px + 4.0 * sigma_px + 12.0 * lost,
         Company::Others => size_px + sigma_px.min(size_px),
     };
-    let off_px = |candidate: &Candidate| pursuit.prediction.centroid.distance_px(candidate.centroid);
+    let off_px = |candidate: &Candidate<'_>| pursuit.prediction.centroid.distance_px(candidate.centroid);
     let prediction = pursuit.prediction;
-    let is_part = |candidate: &Candidate| {
+    let is_part = |candidate: &Candidate<'_>| {
         may_be_covered(track, candidate) && (company == Company::Alone || is_within(&prediction, candidate))
     };
-    let score = |candidate: &Candidate| {
+    let score = |candidate: &Candidate<'_>| {
         if is_part(candidate) { candidate.score_if_covered } else { candidate.score }
     };
-    let possible = |candidate: &Candidate| {
+    let possible = |candidate: &Candidate<'_>| {
         let size = (candidate.area_px2 / pursuit.prediction.area_px2.max(1.0)).ln();
         // What comes out from behind something, or into the picture, shows less of itself.
         let partly = candidate.cut || track.misses > 1;

@@ -16,7 +16,7 @@ const KNOWN_AFTER: u32 = 3;
 pub(super) fn of_miss(
     scene: &Scene<'_>,
     track: &Track,
-    likeness: &Likeness,
+    likeness: &Likeness<'_>,
     prediction: &Prediction,
     gate: &Gate,
     nearest: Option<PointPx>,
@@ -41,7 +41,7 @@ fn lies_inside(scene: &Scene<'_>, prediction: &Prediction) -> bool {
 }
 
 /// The part of the place where the object should be that still shows its colours, 0..1.
-fn visible_part(scene: &Scene<'_>, likeness: &Likeness, prediction: &Prediction) -> f32 {
+fn visible_part(scene: &Scene<'_>, likeness: &Likeness<'_>, prediction: &Prediction) -> f32 {
     let reach_px = (0.5 * prediction.area_px2.sqrt()).max(1.0);
     let place = Gate { centre: prediction.centroid, radius_x_px: reach_px, radius_y_px: reach_px };
     let Some(bounds) = place.bounds(scene.frame.size()) else { return 0.0 };

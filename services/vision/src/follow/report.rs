@@ -2,6 +2,7 @@
 
 use crate::landmark::Landmark;
 use crate::outcome::{LandmarkOutcome, Miss, Sighting};
+use crate::register::Workspace;
 
 /// Ids that came back, to be written anew.
 #[derive(Default)]
@@ -21,17 +22,31 @@ impl Ids {
     }
 }
 
-/// As [`measured`], with an id that came back.
-pub(crate) fn measured_by(
-    ids: &mut Ids,
-    landmark: &Landmark,
-    instance: u32,
-    sighting: Sighting,
-) -> LandmarkOutcome {
-    LandmarkOutcome { result: Ok(sighting), ..missed_by(ids, landmark, instance, Miss::Skipped) }
+/// Where what was found of a landmark goes, and memory for it that came back.
+pub(super) struct Report<'a> {
+    pub(super) outcomes: &'a mut Vec<LandmarkOutcome>,
+    pub(super) ids: &'a mut Ids,
+    pub(super) workspace: &'a mut Workspace,
 }
 
-/// As [`missed`], with an id that came back.
+impl Report<'_> {
+    /// A landmark's object that was found.
+    pub(super) fn measured(
+        &mut self,
+        landmark: &Landmark,
+        instance: u32,
+        sighting: Sighting,
+    ) -> LandmarkOutcome {
+        LandmarkOutcome { result: Ok(sighting), ..self.missed(landmark, instance, Miss::Skipped) }
+    }
+
+    /// A landmark's object that was not found.
+    pub(super) fn missed(&mut self, landmark: &Landmark, instance: u32, reason: Miss) -> LandmarkOutcome {
+        missed_by(self.ids, landmark, instance, reason)
+    }
+}
+
+/// A landmark's object that was not found, with an id that came back.
 pub(crate) fn missed_by(ids: &mut Ids, landmark: &Landmark, instance: u32, reason: Miss) -> LandmarkOutcome {
     LandmarkOutcome {
         landmark: ids.copy_of(&landmark.id),
@@ -43,11 +58,6 @@ pub(crate) fn missed_by(ids: &mut Ids, landmark: &Landmark, instance: u32, reaso
         innovation_px: None,
         adaptation: None,
     }
-}
-
-/// A landmark's object that was found.
-pub(crate) fn measured(landmark: &Landmark, instance: u32, sighting: Sighting) -> LandmarkOutcome {
-    LandmarkOutcome { result: Ok(sighting), ..missed(landmark, instance, Miss::Skipped) }
 }
 
 /// A landmark's object that was not found.

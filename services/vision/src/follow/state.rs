@@ -105,7 +105,7 @@ impl Track {
     }
 
     /// Takes a sighting into account.
-    pub(super) fn follow(&mut self, found: &Candidate, fix: Fix, motion: Motion) {
+    pub(super) fn follow(&mut self, found: &Candidate<'_>, fix: Fix, motion: Motion) {
         self.misses = 0;
         self.sightings = self.sightings.saturating_add(1);
         // What the picture's border or something else cuts tells little of how the whole object looks.

@@ -1,6 +1,7 @@
 //! Which pixels of a bounding box are the object's: colours that fill its middle and are rare around it.
 
 use super::windows::{Sample, stats};
+use crate::adaptive::memory::Memory;
 use crate::adaptive::palette::{Cluster, dot, levels, nearest, palette};
 use crate::adaptive::patch::{Patch, polygon_area_and_centroid};
 use crate::frame::Frame;
@@ -46,7 +47,9 @@ impl Tones {
 
 /// The object's shades in one region and the pixels that show them.
 pub(super) fn sample(frame: &Frame, region: RectPx, tones: Tones) -> Sample {
-    let colours = palette(pixels(frame, neighbourhood(frame, region)), palette_radius(region), PALETTE_LIMIT);
+    let memory = Memory::new();
+    let around = pixels(frame, neighbourhood(frame, region));
+    let colours = palette(&memory, around, palette_radius(region), PALETTE_LIMIT);
     let own = object_colours(frame, region, &colours);
     let label_of = |pixel: [u8; 3]| match nearest(&colours, levels(pixel)) {
         Some((at, _)) if own[at] => Some(at),
@@ -160,15 +163,20 @@ fn keep_shades(
 ) -> Vec<Option<usize>> {
     let object = labels.iter().flatten().count().max(1) as f32;
     let are_one = |main: usize, at: usize| tones.are_one(colours[main], colours[at]);
-    let colour = |main: usize| Shade::of(region, labels, |at| are_one(main, at));
     let seen = |main: &usize| labels.contains(&Some(*main));
-    let by_merit = |a: &(usize, Shade), b: &(usize, Shade)| a.1.merit().total_cmp(&b.1.merit());
-    let all = (0..colours.len()).filter(seen).map(|main| (main, colour(main)));
-    let Some((main, spanning)) = all.max_by(by_merit) else { return labels.to_vec() };
-    let outline = spanning.body.convex();
+    // Of many shades one after the other is looked at, each in the memory of the one before.
+    let (memory, mut scratch) = (Memory::new(), Memory::new());
+    let merit = |main: usize| {
+        scratch.reset();
+        (main, Shade::of(&scratch, region, labels, |at| are_one(main, at)).merit())
+    };
+    let all = (0..colours.len()).filter(seen).map(merit);
+    let Some((main, _)) = all.max_by(|a, b| a.1.total_cmp(&b.1)) else { return labels.to_vec() };
+    let outline = Shade::of(&memory, region, labels, |at| are_one(main, at)).body.convex();
     let keep: Vec<bool> = (0..colours.len())
         .map(|at| {
-            let shade = Shade::of(region, labels, |other| other == at);
+            scratch.reset();
+            let shade = Shade::of(&scratch, region, labels, |other| other == at);
             let large = shade.pixels as f32 >= MIN_SHARE * object;
             let tone = are_one(main, at) || same_shading(colours[main].mean, colours[at].mean);
             at == main || (large && (tone || (shade.is_solid() && !shade.lies_inside(&outline))))
@@ -178,16 +186,21 @@ fn keep_shades(
 }
 
 /// Where one shade, or several as one, show in a region.
-struct Shade {
-    all: Patch,
+struct Shade<'m> {
+    all: Patch<'m>,
     pixels: usize,
     /// Without specks and hair lines.
-    body: Patch,
+    body: Patch<'m>,
 }
 
-impl Shade {
-    fn of(region: RectPx, labels: &[Option<usize>], is_one: impl Fn(usize) -> bool) -> Self {
-        let all = Patch::from_fn(region, |x, y| {
+impl<'m> Shade<'m> {
+    fn of(
+        memory: &'m Memory,
+        region: RectPx,
+        labels: &[Option<usize>],
+        is_one: impl Fn(usize) -> bool,
+    ) -> Self {
+        let all = Patch::from_fn(memory, region, |x, y| {
             labels[y as usize * region.width as usize + x as usize].is_some_and(&is_one)
         });
         Self { pixels: all.count(), body: all.opened(1), all }
@@ -210,7 +223,7 @@ impl Shade {
         self.all.eroded((side / 14).max(1)).count() as f32 >= 0.3 * self.pixels as f32
     }
 
-    fn lies_inside(&self, outline: &Patch) -> bool {
+    fn lies_inside(&self, outline: &Patch<'_>) -> bool {
         let outside = self.body.without(outline).count() as f32;
         outside <= OUTSIDE_PART * self.body.count() as f32
     }

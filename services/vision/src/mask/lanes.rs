@@ -73,7 +73,7 @@ impl Lanes {
 
 impl Lanes {
     /// [`like::like_bits`] with these instructions.
-    pub(crate) fn like_bits(self, row: &[u8], likeness: &Likeness, bits: &mut [u64]) {
+    pub(crate) fn like_bits(self, row: &[u8], likeness: &Likeness<'_>, bits: &mut [u64]) {
         match self.0 {
             Set::Baseline => like::like_bits(row, likeness, bits),
             // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
@@ -83,7 +83,7 @@ impl Lanes {
     }
 
     /// [`like::like_words`] with these instructions.
-    pub(crate) fn like_words(self, row: &[u8], coarse: &Coarse, likeness: &Likeness, bits: &mut [u64]) {
+    pub(crate) fn like_words(self, row: &[u8], coarse: &Coarse, likeness: &Likeness<'_>, bits: &mut [u64]) {
         match self.0 {
             Set::Baseline => like::like_words(row, coarse, likeness, bits),
             // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
@@ -95,13 +95,13 @@ impl Lanes {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2")]
-fn like_bits_avx2(row: &[u8], likeness: &Likeness, bits: &mut [u64]) {
+fn like_bits_avx2(row: &[u8], likeness: &Likeness<'_>, bits: &mut [u64]) {
     like::like_bits(row, likeness, bits);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi1,bmi2")]
-fn like_words_avx2(row: &[u8], coarse: &Coarse, likeness: &Likeness, bits: &mut [u64]) {
+fn like_words_avx2(row: &[u8], coarse: &Coarse, likeness: &Likeness<'_>, bits: &mut [u64]) {
     like::like_words(row, coarse, likeness, bits);
 }
 

@@ -1,5 +1,7 @@
 //! Numbers on the pixels of a rectangle, and their sums over boxes.
 
+use crate::adaptive::memory::{List, Memory};
+
 /// Rows of the grid on which boxes are looked for first.
 const GRID_ROWS: usize = 28;
 
@@ -48,18 +50,18 @@ impl Area {
 }
 
 /// Numbers row by row, and for each corner of a pixel the sum of all above and left of it.
-pub(super) struct Field {
+pub(super) struct Field<'s> {
     width: usize,
     height: usize,
-    values: Vec<f32>,
-    sums: Vec<f64>,
+    values: List<'s, f32>,
+    sums: &'s [f64],
 }
 
-impl Field {
-    pub(super) fn new(width: usize, values: Vec<f32>) -> Self {
+impl<'s> Field<'s> {
+    pub(super) fn new(width: usize, values: List<'s, f32>) -> Self {
         let height = values.len() / width.max(1);
         let stride = width + 1;
-        let mut sums = vec![0.0_f64; stride * (height + 1)];
+        let sums = values.bump().alloc_slice_fill_copy(stride * (height + 1), 0.0_f64);
         for (y, row) in values.chunks_exact(width.max(1)).enumerate() {
             let mut total = 0.0_f64;
             for (x, value) in row.iter().enumerate() {
@@ -72,6 +74,11 @@ impl Field {
 
     pub(super) fn get(&self, x: i32, y: i32) -> f32 {
         self.values[y as usize * self.width + x as usize]
+    }
+
+    /// Where it lies.
+    pub(super) fn memory(&self) -> &'s Memory {
+        self.values.bump()
     }
 
     pub(super) fn height(&self) -> i32 {
@@ -110,7 +117,7 @@ impl Field {
 
     fn fullest_on_grid(&self, threshold: f32, step: usize) -> Option<Area> {
         let (columns, rows) = (self.width.div_ceil(step), self.height.div_ceil(step));
-        let mut cells = vec![0.0_f32; columns * rows];
+        let cells = self.memory().alloc_slice_fill_copy(columns * rows, 0.0_f32);
         for (y, row) in self.values.chunks_exact(self.width).enumerate() {
             for (x, value) in row.iter().enumerate() {
                 cells[y / step * columns + x / step] += value - threshold;
@@ -118,12 +125,12 @@ impl Field {
         }
         let edge = |at: usize, limit: usize| (at * step).min(limit) as i32;
         let (mut best, mut most) = (None, 0.0);
-        let mut sums = vec![0.0_f32; columns];
+        let sums = self.memory().alloc_slice_fill_copy(columns, 0.0_f32);
         for top in 0..rows {
             sums.fill(0.0);
             for (bottom, row) in cells.chunks_exact(columns).enumerate().skip(top) {
                 sums.iter_mut().zip(row).for_each(|(total, cell)| *total += cell);
-                let (sum, left, right) = best_run(&sums);
+                let (sum, left, right) = best_run(sums);
                 if sum > most {
                     let (left, right) = (edge(left, self.width), edge(right, self.width));
                     let (top, bottom) = (edge(top, self.height), edge(bottom + 1, self.height));
@@ -154,6 +161,7 @@ fn best_run(values: &[f32]) -> (f32, usize, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::adaptive::memory::CollectIn;
     use proptest::prelude::*;
 
     fn boxes(width: i32, height: i32) -> impl Iterator<Item = Area> {
@@ -173,7 +181,8 @@ mod tests {
             let values: Vec<f32> = values.into_iter().take(rows * width).map(f32::from).collect();
             let slowly = |area: Area| area.places().map(|(x, y)| values[y as usize * width + x as usize]).sum::<f32>();
             let most = boxes(width as i32, rows as i32).map(slowly).fold(0.0, f32::max);
-            let field = Field::new(width, values.clone());
+            let memory = Memory::new();
+            let field = Field::new(width, values.iter().copied().collect_in(&memory));
             let found = field.fullest_box(0.0);
             prop_assert_eq!(found.map_or(0.0, |(_, sum)| sum), most);
             prop_assert_eq!(found.map_or(0.0, |(area, _)| slowly(area)), most);
@@ -185,7 +194,8 @@ mod tests {
         let inside = Area { left: 31, top: 17, right: 95, bottom: 54 };
         let is_inside = |x: i32, y: i32| inside.places().any(|place| place == (x, y));
         let values = (0..90).flat_map(|y| (0..130).map(move |x| (x, y)));
-        let values = values.map(|(x, y)| if is_inside(x, y) { 1.0 } else { 0.0 }).collect();
+        let memory = Memory::new();
+        let values = values.map(|(x, y)| if is_inside(x, y) { 1.0 } else { 0.0 }).collect_in(&memory);
         assert_eq!(Field::new(130, values).fullest_box(0.6).unwrap().0, inside);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::LEAST_PX;
 use super::field::{Area, Field};
+use crate::adaptive::memory::{CollectIn, List};
 
 /// A side of a box is moved at most so often, by up to this part of the box, to where the outline is plainer by this.
 const MOST_MOVES: usize = 4;
@@ -16,7 +17,7 @@ const OWN: f32 = 0.5;
 type Reach = (i32, i32);
 
 /// The box near `from` with the plainest outline: that around two signs is full enough, but has a corner that is neither's.
-pub(super) fn plainest(field: &Field, from: Area) -> Area {
+pub(super) fn plainest(field: &Field<'_>, from: Area) -> Area {
     let mut best = settled(field, from);
     for part in parts(field, from).into_iter().flatten() {
         let part = settled(field, part);
@@ -45,7 +46,7 @@ pub(super) fn beside(area: Area) -> [Area; 4] {
 }
 
 /// Moves sides while that makes the outline plainer; how plain it is then.
-fn settled(field: &Field, from: Area) -> (Area, f32) {
+fn settled(field: &Field<'_>, from: Area) -> (Area, f32) {
     let mut best = (from, plainness(field, from));
     for _ in 0..MOST_MOVES {
         let (base, before) = best;
@@ -68,7 +69,7 @@ fn settled(field: &Field, from: Area) -> (Area, f32) {
 }
 
 /// How much more the pixels just inside a box belong to the sign than those just outside, on average over its outline.
-fn plainness(field: &Field, area: Area) -> f32 {
+fn plainness(field: &Field<'_>, area: Area) -> f32 {
     let Area { left, top, right, bottom } = area;
     let inside = [
         Area { right: left + 1, ..area },
@@ -82,13 +83,15 @@ fn plainness(field: &Field, area: Area) -> f32 {
 
 /// The boxes on both sides of the column where the sign's pixels reach another height, if there is one: a sign that stands
 /// behind another one's side is lower.
-fn parts(field: &Field, area: Area) -> [Option<Area>; 2] {
-    let reaches: Vec<Reach> = (area.left..area.right).map(|x| reach(field, area, x)).collect();
+fn parts(field: &Field<'_>, area: Area) -> [Option<Area>; 2] {
+    let reaches = (area.left..area.right).map(|x| reach(field, area, x));
+    let reaches: List<'_, Reach> = reaches.collect_in(field.memory());
+    let mut ends = List::with_capacity_in(reaches.len(), field.memory());
     let least = (LEAST_STEP * area.height() as f32).max(1.0);
     let mut best: Option<(i32, i32, Reach, Reach)> = None;
     for at in LEAST_PX.0..=area.width() - LEAST_PX.0 {
         let (left, right) = reaches.split_at(at as usize);
-        let (one, other) = (median(left), median(right));
+        let (one, other) = (median(left, &mut ends), median(right, &mut ends));
         // The step explains more, the less the columns on both sides differ among themselves.
         let rest = off(left, one) + off(right, other);
         if off(&[one], other) as f32 >= least && best.is_none_or(|(least, ..)| rest < least) {
@@ -105,7 +108,7 @@ fn parts(field: &Field, area: Area) -> [Option<Area>; 2] {
 
 /// From where to where the sign's pixels reach in a column of a box, and beyond it where they are connected with it but for
 /// lettering.
-fn reach(field: &Field, area: Area, x: i32) -> Reach {
+fn reach(field: &Field<'_>, area: Area, x: i32) -> Reach {
     let gap = 1 + area.height() / 4;
     let middle = (area.top + area.bottom) / 2;
     let (mut top, mut bottom) = (middle, middle);
@@ -126,10 +129,11 @@ fn reach(field: &Field, area: Area, x: i32) -> Reach {
     (top, bottom)
 }
 
-/// The medians of both ends.
-fn median(reaches: &[Reach]) -> Reach {
-    let middle = |end: fn(&Reach) -> i32| {
-        let mut ends: Vec<i32> = reaches.iter().map(end).collect();
+/// The medians of both ends; `ends` is memory to tell them.
+fn median(reaches: &[Reach], ends: &mut List<'_, i32>) -> Reach {
+    let mut middle = |end: fn(&Reach) -> i32| {
+        ends.clear();
+        ends.extend(reaches.iter().map(end));
         let half = ends.len() / 2;
         *ends.select_nth_unstable(half).1
     };

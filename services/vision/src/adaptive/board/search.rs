@@ -2,13 +2,14 @@
 
 use super::Board;
 use super::shares::Shares;
-use crate::adaptive::candidate::{Candidate, LEAST_SEED_PX, Search};
+use crate::adaptive::candidate::{Candidate, Search};
 use crate::adaptive::likeness::Light;
+use crate::adaptive::memory::{CollectIn, List, sorted};
 use crate::adaptive::mixture::{Mixtures, TwoColours};
 use crate::adaptive::patch::Patch;
+use crate::adaptive::seeds::{LEAST_SEED_PX, Seeds};
 use crate::adaptive::{soft_edge, window};
 use crate::bitmask::BitMask;
-use crate::components::{Component, Components};
 use crate::geometry::RectPx;
 
 /// Lights tried where nothing is known of it, over the most likely one.
@@ -29,7 +30,7 @@ const BORDER: f32 = 0.045;
 const WIDEST_BORDER_PX: f32 = 4.0;
 
 /// A candidate and its box.
-type Found = (RectPx, Candidate);
+type Found<'m> = (RectPx, Candidate<'m>);
 
 /// The search under one light.
 #[derive(Clone, Copy)]
@@ -39,17 +40,18 @@ struct Pass<'a> {
     mixtures: &'a Mixtures,
 }
 
-/// What looks like the sign among the pixels of its tint, `like`; `belonging` and `components` are memory to do so.
-pub(in crate::adaptive) fn find(
+/// Adds what looks like the sign among the pixels of its tint, `like`; `belonging` and `seeds` are memory to do so.
+pub(in crate::adaptive) fn find<'m>(
     search: &Search<'_>,
     like: &BitMask,
     belonging: &mut BitMask,
-    components: &mut Components,
-) -> Vec<Candidate> {
-    let Some(face) = search.likeness.face() else { return Vec::new() };
+    seeds: &mut Seeds,
+    boards: &mut List<'m, Candidate<'m>>,
+) {
+    let Some(face) = search.likeness.face() else { return };
     let colours = face.colours();
     let gains = if search.likeness.is_light_unknown() { &GAINS[..] } else { &GAINS[..1] };
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: List<'m, Found<'m>> = List::new_in(boards.bump());
     for (tried, gain) in gains.iter().enumerate() {
         if tried >= LIKELY_GAINS && found.iter().any(|(_, candidate)| candidate.score >= CLEAR_SCORE) {
             break;
@@ -57,34 +59,30 @@ pub(in crate::adaptive) fn find(
         let mixtures = colours.under(gain * search.light.gain, search.noise_variance);
         let pass = Pass { search, colours, mixtures: &mixtures };
         mark(search, like, &mixtures, belonging);
-        found.extend(pass.boards(belonging, components));
+        pass.boards(belonging, seeds, &mut found);
     }
-    found.sort_by(|a, b| b.1.score.total_cmp(&a.1.score));
-    let mut kept: Vec<Found> = Vec::new();
-    for (area, candidate) in found {
-        if !kept.iter().any(|(known, _)| is_same(*known, area)) {
-            kept.push((area, candidate));
+    let mut known: List<'_, RectPx> = List::new_in(boards.bump());
+    for (area, candidate) in sorted(found, |a, b| b.1.score.total_cmp(&a.1.score)) {
+        if !known.iter().any(|known| is_same(*known, area)) {
+            known.push(area);
+            boards.push(candidate);
         }
     }
-    kept.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
 /// The pixels of `like` that belong to the sign under one light.
 fn mark(search: &Search<'_>, like: &BitMask, mixtures: &Mixtures, belonging: &mut BitMask) {
     belonging.reset(like.width(), like.height());
-    let mut runs = Vec::new();
     for y in like.touched_rows() {
-        runs.clear();
-        like.append_runs(y, &mut runs);
         let row = &search.frame.row(search.region.y + y)[3 * search.region.x as usize..];
-        for run in &runs {
+        like.each_run(y, |run| {
             let pixels = row[3 * run.x_start as usize..3 * run.x_end as usize].as_chunks::<3>().0;
             for (x, pixel) in (run.x_start..).zip(pixels) {
                 if mixtures.share(*pixel).belongs >= SEED {
                     belonging.set(x, y);
                 }
             }
-        }
+        });
     }
 }
 
@@ -95,39 +93,34 @@ fn is_same(a: RectPx, b: RectPx) -> bool {
 }
 
 impl Pass<'_> {
-    /// The boxes among the pixels that belong to signs.
-    fn boards(&self, belonging: &mut BitMask, components: &mut Components) -> Vec<Found> {
-        let (mut known, mut found): (Vec<RectPx>, Vec<Found>) = (Vec::new(), Vec::new());
+    /// Adds the boxes among the pixels that belong to signs.
+    fn boards<'m>(&self, belonging: &mut BitMask, seeds: &mut Seeds, all: &mut List<'m, Found<'m>>) {
+        let memory = all.bump();
+        let (mut known, mut found) = (List::new_in(memory), List::new_in(memory));
         for round in 0..ROUNDS {
-            components.find(belonging);
-            let mut seeds: Vec<&Component> =
-                components.list().iter().filter(|seed| seed.pixels >= LEAST_SEED_PX).collect();
-            seeds.sort_by_key(|seed| std::cmp::Reverse(seed.pixels));
+            seeds.find(belonging, LEAST_SEED_PX..=u64::MAX);
             let before = known.len();
-            for seed in seeds.iter().take(self.search.limit) {
-                let bounds = self.bounds(seed);
+            for at in 0..seeds.len().min(self.search.limit) {
+                let (seed, scratch) = seeds.seed_and_scratch(at);
+                let bounds = seed.bounds(self.search);
                 // Only what is next to a box that was found may be another one.
                 if round > 0 && !known.iter().any(|area| is_near(*area, bounds)) {
                     continue;
                 }
-                let shares = Shares::around(self.search.frame, bounds, self.mixtures);
+                let shares = Shares::around(scratch, self.search.frame, bounds, self.mixtures);
                 let Some(board) = shares.board(&known) else { continue };
                 let area = shares.in_frame(&board);
                 known.push(area);
-                found.extend(self.candidate(&shares, &board).map(|candidate| (area, candidate)));
+                let candidate = self.candidate(&shares, &board);
+                found.extend(candidate.map(|candidate| (area, candidate.kept_in(memory))));
             }
             if known.len() == before {
                 break;
             }
             known[before..].iter().for_each(|area| self.clear(belonging, *area));
         }
-        self.join_behind_posts(&mut known, &mut found);
-        found
-    }
-
-    fn bounds(&self, seed: &Component) -> RectPx {
-        let (x, y) = (self.search.region.x + seed.x_start, self.search.region.y + seed.y_start);
-        RectPx { x, y, width: seed.width(), height: seed.height() }
+        self.join_behind_posts(known, &mut found, seeds);
+        all.append(&mut found);
     }
 
     /// Takes a box and what is mixed around it out of the pixels.
@@ -144,22 +137,29 @@ impl Pass<'_> {
     }
 
     /// Takes two boxes for one sign where a post may hide what is between them.
-    fn join_behind_posts(&self, known: &mut [RectPx], found: &mut Vec<Found>) {
-        known.sort_by_key(|area| area.x);
+    fn join_behind_posts<'m>(
+        &self,
+        known: List<'m, RectPx>,
+        found: &mut List<'m, Found<'m>>,
+        seeds: &mut Seeds,
+    ) {
+        let memory = known.bump();
+        let known: List<'_, RectPx> = sorted(known, |a, b| a.x.cmp(&b.x)).collect_in(memory);
         for (at, left) in known.iter().enumerate() {
             for right in &known[at + 1..] {
-                let whole = Shares::behind_post(self.search.frame, self.mixtures, (*left, *right));
+                let scratch = seeds.scratch();
+                let whole = Shares::behind_post(scratch, self.search.frame, self.mixtures, (*left, *right));
                 let Some((shares, board)) = whole else { continue };
                 let joined = self.candidate(&shares, &board);
                 if let Some(joined) = joined.filter(|joined| joined.score >= BEHIND_POST) {
                     found.retain(|(area, _)| area != left && area != right);
-                    found.push((shares.in_frame(&board), joined));
+                    found.push((shares.in_frame(&board), joined.kept_in(memory)));
                 }
             }
         }
     }
 
-    fn candidate(&self, shares: &Shares<'_>, board: &Board) -> Option<Candidate> {
+    fn candidate<'s>(&self, shares: &Shares<'s>, board: &Board) -> Option<Candidate<'s>> {
         let Self { search, colours, .. } = *self;
         let object = shares.patch(board);
         let widest_px = (BORDER * (object.count() as f32).sqrt()).round().clamp(1.0, WIDEST_BORDER_PX);
@@ -184,7 +184,7 @@ impl Pass<'_> {
     }
 
     /// The mean colour of an object without its mixed edge.
-    fn mean(&self, object: &Patch) -> [f32; 3] {
+    fn mean(&self, object: &Patch<'_>) -> [f32; 3] {
         let inner = object.eroded(1);
         let inner = if inner.count() >= 6 { &inner } else { object };
         let (mut n, mut sum) = (0.0_f32, [0.0_f32; 3]);

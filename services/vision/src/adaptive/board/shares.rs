@@ -3,6 +3,7 @@
 use super::field::{Area, Field};
 use super::outline;
 use super::{BELONGS, Board, LEAST_PX};
+use crate::adaptive::memory::{CollectIn, List, Memory};
 use crate::adaptive::mixture::Mixtures;
 use crate::adaptive::patch::Patch;
 use crate::adaptive::segment;
@@ -28,16 +29,22 @@ pub(super) struct Shares<'a> {
     mixtures: &'a Mixtures,
     rect: RectPx,
     /// How much each pixel belongs to the sign, and which part of it is lettering.
-    belongs: Vec<f32>,
-    lettered: Vec<f32>,
+    belongs: List<'a, f32>,
+    lettered: List<'a, f32>,
 }
 
 impl<'a> Shares<'a> {
     /// What lies around `bounds`.
-    pub(super) fn around(frame: &'a Frame, bounds: RectPx, mixtures: &'a Mixtures) -> Self {
+    pub(super) fn around(
+        memory: &'a Memory,
+        frame: &'a Frame,
+        bounds: RectPx,
+        mixtures: &'a Mixtures,
+    ) -> Self {
         let rect = segment::surroundings(bounds, frame);
         let pixels = rect.width as usize * rect.height as usize;
-        let (mut belongs, mut lettered) = (Vec::with_capacity(pixels), Vec::with_capacity(pixels));
+        let list = || List::with_capacity_in(pixels, memory);
+        let (mut belongs, mut lettered) = (list(), list());
         for y in rect.y..rect.y + rect.height {
             let row = &frame.row(y)[3 * rect.x as usize..][..3 * rect.width as usize];
             for pixel in row.as_chunks::<3>().0 {
@@ -68,6 +75,7 @@ impl<'a> Shares<'a> {
     /// Two boxes, the left one first, as one sign that a post stands before, where that can be: they have the same rows, and
     /// next to nothing is between them.
     pub(super) fn behind_post(
+        memory: &'a Memory,
         frame: &'a Frame,
         mixtures: &'a Mixtures,
         (left, right): (RectPx, RectPx),
@@ -83,7 +91,7 @@ impl<'a> Shares<'a> {
         let (top, bottom) = (left.y.min(right.y), (left.y + left.height).max(right.y + right.height));
         let width = right.x + right.width - left.x;
         let bounds = RectPx { x: left.x, y: top, width, height: bottom - top };
-        let shares = Self::around(frame, bounds, mixtures);
+        let shares = Self::around(memory, frame, bounds, mixtures);
         let board = shares.judged(shares.area_of(bounds));
         Some((shares, board))
     }
@@ -105,8 +113,8 @@ impl<'a> Shares<'a> {
     }
 
     /// What of a box nothing hides: posts stand before some of its columns from top to bottom.
-    fn in_view(&self, area: Area) -> Vec<Area> {
-        let mut parts: Vec<Area> = Vec::new();
+    fn in_view(&self, area: Area) -> List<'a, Area> {
+        let mut parts: List<'_, Area> = List::new_in(self.memory());
         for x in area.left..area.right {
             let column = Area { left: x, right: x + 1, ..area };
             if self.mean(column) < SEEN {
@@ -120,6 +128,11 @@ impl<'a> Shares<'a> {
         parts
     }
 
+    /// Where it lies.
+    fn memory(&self) -> &'a Memory {
+        self.belongs.bump()
+    }
+
     /// How much the pixels of a box belong to the sign on average; 0 outside.
     fn mean(&self, area: Area) -> f32 {
         let area = area.clipped(self.rect.width as i32, self.height());
@@ -128,7 +141,7 @@ impl<'a> Shares<'a> {
     }
 
     /// A board's pixels that belong to the sign and those between them, with room around them.
-    pub(super) fn patch(&self, board: &Board) -> Patch {
+    pub(super) fn patch(&self, board: &Board) -> Patch<'a> {
         let rect = segment::surroundings(self.in_frame(board), self.frame);
         let part = |area: Area| {
             let belongs = |x: i32, y: i32| {
@@ -136,17 +149,17 @@ impl<'a> Shares<'a> {
                 let inside = (area.left..area.right).contains(&x) && (area.top..area.bottom).contains(&y);
                 inside && self.belongs[self.at(x, y)] >= OWN
             };
-            Patch::from_fn(rect, belongs).convex()
+            Patch::from_fn(self.memory(), rect, belongs).convex()
         };
         let parts = self.in_view(board.area).into_iter().map(part);
-        parts.fold(Patch::empty(rect), |all, part| all.with(&part))
+        parts.fold(Patch::empty(self.memory(), rect), |all, part| all.with(&part))
     }
 
     /// The sign's own colour and its lettering's: that as light as any of it is seen, which is no lighter than it is.
     pub(super) fn colours(&self, board: &Board) -> ([f32; 3], [f32; 3]) {
         let pixel = |(x, y): (i32, i32)| self.frame.pixel(self.rect.x + x as u32, self.rect.y + y as u32);
         let lettered = board.area.places().filter_map(|place| self.mixtures.lettered(pixel(place)));
-        let mut lettered: Vec<f32> = lettered.collect();
+        let mut lettered: List<'_, f32> = lettered.collect_in(self.memory());
         let at = ((1.0 - GLARE) * lettered.len() as f32) as usize;
         let lightest =
             if at < lettered.len() { *lettered.select_nth_unstable_by(at, f32::total_cmp).1 } else { 1.0 };

@@ -1,5 +1,6 @@
 //! Signs that overlap, stand behind posts and before bushes, in drawn frames.
 
+use crate::adaptive::memory::{List, Memory};
 use crate::adaptive::{Candidate, Finder, Light, Likeness, Search};
 use crate::frame::Frame;
 use crate::geometry::{PointPx, RectPx};
@@ -69,26 +70,28 @@ fn learned() -> Landmark {
 }
 
 /// What is found anywhere, with at least the score that one more sign needs.
-fn found(frame: &Frame) -> Vec<Candidate> {
+fn found<'m>(memory: &'m Memory, frame: &Frame) -> List<'m, Candidate<'m>> {
     let landmark = learned();
-    let likeness = Likeness::anywhere(&landmark, Light::AS_LEARNED, [1.0; 3]);
-    let mut all = Finder::default().candidates(&Search {
+    let likeness = Likeness::anywhere(memory, &landmark, Light::AS_LEARNED, [1.0; 3]);
+    let search = Search {
         frame,
         region: RectPx::whole(frame.size()),
         landmark: &landmark,
-        likeness: &likeness,
+        likeness,
         light: Light::AS_LEARNED,
         noise_variance: [1.0; 3],
         blur_px: 0.5,
         limit: 24,
-    });
+    };
+    let mut all = Finder::default().candidates(&search, memory);
     all.retain(|candidate| candidate.score >= 0.5);
     all
 }
 
 #[track_caller]
 fn assert_found(frame: &Frame, centres: &[(f32, f32)], within_px: f32) {
-    let found = found(frame);
+    let memory = Memory::new();
+    let found = found(&memory, frame);
     let places: Vec<PointPx> = found.iter().map(|candidate| candidate.centroid).collect();
     assert_eq!(places.len(), centres.len(), "{places:?}");
     for &(x, y) in centres {
@@ -134,7 +137,8 @@ fn a_sign_that_leans_a_little_is_found() {
 fn a_sign_is_measured_with_its_border() {
     // Before the sky it cannot be seen, before the grass it can.
     let frame = drawn(&[Sign::new((120.3, 60.4), (60.0, 30.0))], |_, _| None);
-    let found = found(&frame);
+    let memory = Memory::new();
+    let found = found(&memory, &frame);
     let [sign] = &found[..] else { panic!("{} signs", found.len()) };
     assert!(sign.centroid.distance_px(PointPx::new(120.3, 60.4)) < 0.3, "{:?}", sign.centroid);
     assert!((sign.area_px2 / 1800.0 - 1.0).abs() < 0.08, "{} px²", sign.area_px2);

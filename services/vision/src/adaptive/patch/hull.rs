@@ -1,21 +1,24 @@
 //! The convex hull of a patch.
 
 use super::Patch;
+use crate::adaptive::memory::{CollectIn, List};
 use crate::geometry::PointPx;
 
-impl Patch {
+impl<'m> Patch<'m> {
     /// The corners of the convex hull of the set pixels (their squares, not their centres), counter-clockwise in a
     /// frame with y down, in frame pixels.
-    pub(crate) fn hull(&self) -> Vec<PointPx> {
-        let mut corners: Vec<(i32, i32)> = Vec::new();
-        for row in self.runs().chunk_by(|a, b| a.y == b.y) {
+    pub(crate) fn hull(&self) -> List<'m, PointPx> {
+        let runs = self.runs();
+        let mut corners: List<'_, (i32, i32)> = List::with_capacity_in(4 * runs.len(), self.memory);
+        for row in runs.chunk_by(|a, b| a.y == b.y) {
             let (first, end, y) = (row[0].x_start as i32, row[row.len() - 1].x_end as i32, row[0].y as i32);
             corners.extend([(first, y), (first, y + 1), (end, y), (end, y + 1)]);
         }
         corners.sort_unstable();
         corners.dedup();
         let half = |points: &mut dyn Iterator<Item = &(i32, i32)>| {
-            let mut chain: Vec<(i32, i32)> = Vec::new();
+            let mut chain: List<'_, (i32, i32)> =
+                List::with_capacity_in(points.size_hint().0 + 1, self.memory);
             for &point in points {
                 while let [.., a, b] = chain[..]
                     && cross(a, b, point) <= 0
@@ -30,20 +33,20 @@ impl Patch {
         let mut hull = half(&mut corners.iter());
         hull.extend(half(&mut corners.iter().rev()));
         let (x, y) = (self.rect.x as f32, self.rect.y as f32);
-        hull.into_iter().map(|(u, v)| PointPx::new(x + u as f32, y + v as f32)).collect()
+        hull.into_iter().map(|(u, v)| PointPx::new(x + u as f32, y + v as f32)).collect_in(self.memory)
     }
 
     /// With every pixel set whose centre lies in the convex hull.
     pub(crate) fn convex(&self) -> Self {
         let hull = self.hull();
-        let mut filled = self.clone();
+        let mut filled = self.copy();
         for y in 0..self.rect.height {
             let (left, right) = span(&hull, (self.rect.y + y) as f32 + 0.5);
             let column =
                 |x: f32| (x - self.rect.x as f32 - 0.5).ceil().clamp(0.0, self.rect.width as f32) as u32;
             // A centre that lies on the right side of the hull is inside.
             let (start, end) = (column(left), column(right.next_up()));
-            filled.mask.set_run(y, start, end.max(start));
+            filled.set_run(y, start, end.max(start));
         }
         filled
     }

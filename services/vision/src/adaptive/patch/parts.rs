@@ -3,19 +3,20 @@
 use std::ops::Range;
 
 use super::Patch;
+use crate::adaptive::memory::{CollectIn, List};
 use crate::bitmask::Run;
 
 /// 4-connected sets of runs.
-struct Sets {
-    runs: Vec<Run>,
+struct Sets<'m> {
+    runs: List<'m, Run>,
     /// Union-find: a root is its own parent.
-    parent: Vec<u32>,
+    parent: List<'m, u32>,
 }
 
-impl Sets {
-    fn of(patch: &Patch) -> Self {
+impl<'m> Sets<'m> {
+    fn of(patch: &Patch<'m>) -> Self {
         let runs = patch.runs();
-        let mut sets = Self { parent: (0..runs.len() as u32).collect(), runs };
+        let mut sets = Self { parent: (0..runs.len() as u32).collect_in(patch.memory), runs };
         let mut above: Range<usize> = 0..0;
         let mut at = 0;
         while at < sets.runs.len() {
@@ -56,22 +57,22 @@ impl Sets {
     }
 }
 
-impl Patch {
+impl Patch<'_> {
     /// The 4-connected part that overlaps `seed` most, with every other whose overlap is at least `least` of that.
-    pub(crate) fn parts_overlapping(&self, seed: &Self, least: f32) -> Option<Self> {
+    pub(crate) fn parts_overlapping(&self, seed: &Patch<'_>, least: f32) -> Option<Self> {
         let sets = Sets::of(self);
-        let mut overlap = vec![0_u32; sets.runs.len()];
+        let overlap = self.memory.alloc_slice_fill_copy(sets.runs.len(), 0_u32);
         for (at, run) in sets.runs.iter().enumerate() {
             overlap[sets.root(at)] += seed.count_in(run);
         }
         let most = overlap.iter().copied().max().filter(|&most| most > 0)?;
         // Of several with the same overlap the first stands for all when only one is wanted.
         let first = overlap.iter().position(|&o| o == most)?;
-        let mut union = Self::empty(self.rect);
+        let mut union = Self::empty(self.memory, self.rect);
         for (at, run) in sets.runs.iter().enumerate() {
             let root = sets.root(at);
             if root == first || (least < 1.0 && overlap[root] as f32 >= least * most as f32) {
-                union.mask.set_run(run.y, run.x_start, run.x_end);
+                union.set_run(run.y, run.x_start, run.x_end);
             }
         }
         Some(union)
@@ -90,17 +91,17 @@ impl Patch {
     /// With its holes filled: unset pixels that are not 4-connected with the patch's edge.
     pub(crate) fn filled(&self) -> Self {
         let outside = Sets::of(&self.inverted());
-        let mut open = vec![false; outside.runs.len()];
+        let open = self.memory.alloc_slice_fill_copy(outside.runs.len(), false);
         for (at, run) in outside.runs.iter().enumerate() {
             let (last_x, last_y) = (self.rect.width, self.rect.height - 1);
             if run.x_start == 0 || run.x_end == last_x || run.y == 0 || run.y == last_y {
                 open[outside.root(at)] = true;
             }
         }
-        let mut filled = self.clone();
+        let mut filled = self.copy();
         for (at, run) in outside.runs.iter().enumerate() {
             if !open[outside.root(at)] {
-                filled.mask.set_run(run.y, run.x_start, run.x_end);
+                filled.set_run(run.y, run.x_start, run.x_end);
             }
         }
         filled
