@@ -8,11 +8,15 @@ use std::ops::Range;
 use super::aligned::Aligned;
 use super::chunk::{Chunk, WIDTH, chunks, chunks_mut, join, whole_chunks};
 use super::mesh::{CELL_ROWS, SubBlock};
-use super::planes::Planes;
+use super::planes::read_channel;
+use crate::doubled_grid::DoubledGrid;
+use crate::frame::Frame;
 
 /// Blocks side by side whose windows are summed together, and what the windows are.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strip {
+    /// Its first column in the region.
+    first: u32,
     wide: usize,
     high: usize,
     blocks: usize,
@@ -28,7 +32,15 @@ impl Strip {
         let SubBlock { width_px, height_px } = windows;
         let existing = (region_width + 1).saturating_sub(first + width_px) as usize;
         let columns = existing.min(WIDTH * blocks + 1);
-        Self { wide: width_px as usize, high: height_px as usize, blocks, columns }
+        Self { first, wide: width_px as usize, high: height_px as usize, blocks, columns }
+    }
+
+    /// Some of its blocks.
+    #[inline(always)]
+    fn part(self, blocks: &Range<usize>) -> Self {
+        let columns = self.columns.saturating_sub(WIDTH * blocks.start).min(WIDTH * blocks.len() + 1);
+        let first = self.first + (WIDTH * blocks.start) as u32;
+        Self { first, blocks: blocks.len(), columns, ..self }
     }
 
     /// The rows of pixels under the windows of these bands.
@@ -68,9 +80,18 @@ impl Strip {
     }
 }
 
+/// Where the pixels are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    pub(super) frame: &'a Frame,
+    pub(super) grid: &'a DoubledGrid,
+}
+
 /// Memory of the sums of a channel.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Channel {
+    /// Of the present row.
+    pixels: Aligned<u8>,
     /// Of the present row, of two pixels half a window's width apart, or of one where windows are odd; and of 2, 4, 8 … of
     /// these.
     levels: Vec<Aligned<u16>>,
@@ -81,7 +102,8 @@ pub(super) struct Channel {
     places: usize,
     /// Over whole windows, those of the last band.
     windows: Aligned<u16>,
-    last_band: Option<usize>,
+    /// That band, and the blocks that were looked at.
+    last: Option<(usize, Range<usize>)>,
 }
 
 impl Channel {
@@ -89,48 +111,58 @@ impl Channel {
     #[inline(always)]
     pub(super) fn fit(&mut self, strip: Strip) {
         self.places = strip.most_rows().next_multiple_of(CELL_ROWS as usize);
+        self.pixels.fit(strip.pixels());
         self.rows.fit(self.places * WIDTH * (strip.blocks + 1));
         self.windows.fit(WIDTH * (strip.blocks + 1));
         self.levels.resize_with(1 + strip.count().ilog2() as usize, Aligned::default);
         for level in &mut self.levels {
             level.fit(strip.paired() + whole_chunks(strip.wide));
         }
-        self.last_band = None;
+        self.last = None;
     }
 
-    /// Notes the levels between which the means of the windows of each block lie that start in these bands of rows. They are
-    /// rounded to the inside: [`Acceptance::levels_around_means`](crate::statistics::Acceptance) says how to compare.
+    /// Notes the levels between which the means of the windows of each of these blocks of the strip lie that start in these
+    /// bands of rows. They are rounded to the inside:
+    /// [`Acceptance::levels_around_means`](crate::statistics::Acceptance) says how to compare.
     #[inline(always)]
     pub(super) fn look(
         &mut self,
         strip: Strip,
-        (planes, channel): (&Planes, usize),
-        bands: Range<usize>,
+        (source, channel): (Source<'_>, usize),
+        (bands, blocks): (Range<usize>, Range<usize>),
         levels: [&mut [u8]; 2],
     ) {
-        let rows = strip.rows(&bands);
-        let goes_on = self.last_band == Some(bands.start);
-        for row in if goes_on { bands.start + strip.high } else { bands.start }..rows.end {
-            self.sum_row(strip, planes.channel(row as u32, channel), row);
+        let goes_on = |(band, seen): &(usize, Range<usize>)| {
+            *band == bands.start && seen.start <= blocks.start && blocks.end <= seen.end
+        };
+        let goes_on = self.last.as_ref().is_some_and(goes_on);
+        let part = strip.part(&blocks);
+        let new_rows = if goes_on { bands.start + strip.high } else { bands.start }..strip.rows(&bands).end;
+        for row in new_rows {
+            let Source { frame, grid } = source;
+            let levels = &mut self.pixels[..part.pixels()];
+            read_channel(frame, grid, row as u32, part.first, channel, levels);
+            self.sum_row(part, (blocks.start, row));
         }
         if !goes_on {
-            self.begin(strip, bands.start);
+            self.begin(part, (blocks.start, bands.start));
         }
-        self.last_band = Some(bands.end - 1);
-        self.descend(strip, bands, levels);
+        self.descend(part, (blocks.start, bands.clone()), levels);
+        self.last = Some((bands.end - 1, blocks));
     }
 
-    /// Sums row `row` over each window's width.
+    /// Sums row `row` over each window's width, from block `first` on.
     #[inline(always)]
-    fn sum_row(&mut self, strip: Strip, pixels: &[u8], row: usize) {
+    fn sum_row(&mut self, strip: Strip, (first, row): (usize, usize)) {
         let (paired, count) = (strip.paired(), strip.count());
-        let first = chunks_mut(&mut self.levels[0][..paired]).iter_mut().zip(chunks(pixels));
+        let pixels = &*self.pixels;
+        let lowest = chunks_mut(&mut self.levels[0][..paired]).iter_mut().zip(chunks(pixels));
         if let Some(half) = strip.half() {
-            for ((sums, left), right) in first.zip(chunks(&pixels[half..])) {
+            for ((sums, left), right) in lowest.zip(chunks(&pixels[half..])) {
                 *sums = join(*left, *right, |left, right| u16::from(left) + u16::from(right));
             }
         } else {
-            for (sums, pixels) in first {
+            for (sums, pixels) in lowest {
                 *sums = join(*pixels, *pixels, |level, _| u16::from(level));
             }
         }
@@ -142,15 +174,16 @@ impl Channel {
                 *sums = join(*left, *right, u16::wrapping_add);
             }
         }
-        self.add_levels(count, row % self.places);
+        self.add_levels(count, (first, row % self.places));
     }
 
     /// Puts `count` numbers together from sums of powers of two: the largest, itself two of the one below it, and smaller
-    /// ones after it.
+    /// ones after it. They are of block `first` and those after it.
     #[inline(always)]
-    fn add_levels(&mut self, count: usize, place: usize) {
+    fn add_levels(&mut self, count: usize, (first, place): (usize, usize)) {
         let Self { rows, levels, places, .. } = self;
-        let columns = chunks_mut(rows).chunks_exact_mut(*places);
+        let rows = &mut chunks_mut(rows)[*places * first..];
+        let columns = rows.chunks_exact_mut(*places);
         let Some(below) = count.ilog2().checked_sub(1) else {
             for (column, sums) in columns.zip(chunks(&levels[0])) {
                 column[place] = *sums;
@@ -175,17 +208,18 @@ impl Channel {
             }
         }
         for more in rest {
-            for (column, more) in chunks_mut(rows).chunks_exact_mut(*places).zip(more) {
+            for (column, more) in rows.chunks_exact_mut(*places).zip(more) {
                 column[place] = join(column[place], *more, u16::wrapping_add);
             }
         }
     }
 
-    /// Sums over the windows of a band.
+    /// Sums over the windows of a band, of block `first` and those after it.
     #[inline(always)]
-    fn begin(&mut self, strip: Strip, band: usize) {
+    fn begin(&mut self, strip: Strip, (first, band): (usize, usize)) {
         let columns = chunks(&self.rows).chunks_exact(self.places);
-        for (windows, column) in chunks_mut(&mut self.windows).iter_mut().zip(columns) {
+        let places = chunks_mut(&mut self.windows).iter_mut().zip(columns);
+        for (windows, column) in places.skip(first).take(strip.blocks + 1) {
             *windows = [0; WIDTH];
             for row in band..band + strip.high {
                 *windows = join(*windows, column[row % self.places], u16::wrapping_add);
@@ -193,9 +227,14 @@ impl Channel {
         }
     }
 
-    /// Goes from the first to the last of these bands, and notes the extremes of all.
+    /// Goes from the first to the last of these bands, and notes the extremes of all, of block `first` and those after it.
     #[inline(always)]
-    fn descend(&mut self, strip: Strip, bands: Range<usize>, [lows, highs]: [&mut [u8]; 2]) {
+    fn descend(
+        &mut self,
+        strip: Strip,
+        (first, bands): (usize, Range<usize>),
+        [lows, highs]: [&mut [u8]; 2],
+    ) {
         let Self { rows, windows, places, .. } = self;
         let moves = bands.len() - 1;
         // The rows that are left behind lie together; those that enter may go on from the first place.
@@ -204,7 +243,7 @@ impl Channel {
         let (of_lowest, of_highest) = levels((strip.wide * strip.high) as u16);
         let mut block_before: Option<[u16; 2]> = None;
         let columns = chunks_mut(windows).iter_mut().zip(chunks(rows).chunks_exact(*places));
-        for (block, (windows, column)) in columns.enumerate() {
+        for (block, (windows, column)) in columns.skip(first).take(strip.blocks + 1).enumerate() {
             let [mut low, mut high] = [*windows; 2];
             let (left, last) = column[leave..][..moves].split_at(before);
             slide(windows, &column[enter..], left, [&mut low, &mut high]);

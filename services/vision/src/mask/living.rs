@@ -22,18 +22,17 @@ impl Living {
     }
 
     /// Takes from cells the colours that the range of one channel there rules out. Gives how many cells this channel alone
-    /// would leave, and whether something lives on in any of them.
+    /// would leave.
     #[inline(always)]
-    pub(super) fn narrow(&mut self, channel: usize, cells: Range<usize>, ranges: &Ranges) -> (usize, bool) {
+    pub(super) fn narrow(&mut self, channel: usize, cells: Range<usize>, ranges: &Ranges) -> usize {
         let [low, high] = ranges.channel(channel, cells.clone());
-        let (mut left, mut any) = (0, 0);
+        let mut left = 0;
         for (living, (&low, &high)) in self.cells[cells].iter_mut().zip(low.iter().zip(high)) {
             let touching = self.index.touching(channel, low, high);
             left += usize::from(touching != 0);
             *living &= touching;
-            any |= *living;
         }
-        (left, any != 0)
+        left
     }
 
     /// The colours of every cell, row after row.

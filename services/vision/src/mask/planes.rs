@@ -40,19 +40,15 @@ impl Planes {
         if self.rows[place].replace(row) == Some(row) {
             return;
         }
-        let region = grid.region();
-        let inside = ((region.width - self.first_column) as usize).min(self.columns);
-        let start = 3 * (region.x + self.first_column) as usize;
-        let pixels = &frame.row(region.y + row)[start..start + 3 * inside];
+        let pixels = inside(frame, grid, row, self.first_column, self.columns);
         let [red, green, blue] = places_mut(&mut self.levels, self.columns, place);
         // One plain loop over pixels: for that, not for chunks of it, the compiler has instructions that split three ways.
-        let channels = red.iter_mut().zip(green.iter_mut()).zip(blue.iter_mut());
-        for (((red, green), blue), pixel) in channels.zip(pixels.as_chunks::<3>().0) {
+        let levels = red.iter_mut().zip(green.iter_mut()).zip(blue.iter_mut());
+        for (((red, green), blue), pixel) in levels.zip(pixels) {
             [*red, *green, *blue] = *pixel;
         }
         for channel in [red, green, blue] {
-            let last = inside.checked_sub(1).map_or(0, |last| channel[last]);
-            channel[inside..].fill(last);
+            repeat_last(channel, pixels.len());
         }
     }
 
@@ -101,6 +97,42 @@ impl Planes {
         let place = self.place(row);
         &self.levels[(3 * place + channel) * self.columns..][..self.columns]
     }
+}
+
+/// Makes `levels` one channel of row `row` of the region from column `first` on; as [`Planes::read`] says.
+#[inline(always)]
+pub(super) fn read_channel(
+    frame: &Frame,
+    grid: &DoubledGrid,
+    row: u32,
+    first: u32,
+    channel: usize,
+    levels: &mut [u8],
+) {
+    let pixels = inside(frame, grid, row, first, levels.len());
+    // The channel's number must be known where the loop is compiled.
+    match channel {
+        0 => levels.iter_mut().zip(pixels).for_each(|(level, pixel)| *level = pixel[0]),
+        1 => levels.iter_mut().zip(pixels).for_each(|(level, pixel)| *level = pixel[1]),
+        _ => levels.iter_mut().zip(pixels).for_each(|(level, pixel)| *level = pixel[2]),
+    }
+    repeat_last(levels, pixels.len());
+}
+
+/// The pixels of row `row` of the region from column `first` on, at most so many.
+#[inline(always)]
+fn inside<'f>(frame: &'f Frame, grid: &DoubledGrid, row: u32, first: u32, columns: usize) -> &'f [[u8; 3]] {
+    let region = grid.region();
+    let count = ((region.width - first) as usize).min(columns);
+    let start = 3 * (region.x + first) as usize;
+    frame.row(region.y + row)[start..start + 3 * count].as_chunks().0
+}
+
+/// Repeats the last of `count` levels to the end.
+#[inline(always)]
+fn repeat_last(levels: &mut [u8], count: usize) {
+    let last = count.checked_sub(1).map_or(0, |last| levels[last]);
+    levels[count..].fill(last);
 }
 
 /// The three channels of a place.

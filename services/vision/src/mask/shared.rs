@@ -136,7 +136,7 @@ impl Group {
         colour
     }
 
-    /// Looks closer at the cells where several colours live, of so many blocks a row.
+    /// Looks closer at the cells that are worth it, of so many blocks a row.
     #[inline(always)]
     fn sort(
         &mut self,
@@ -151,8 +151,9 @@ impl Group {
         if let Some(lattice) = Lattice::of(grid.window()) {
             let (index, most_between_halves) = (&self.of_lattice, self.most_between_halves);
             let closer = Closer { frame, grid, lattice, index, most_between_halves };
+            let worth_it = least_worth_a_look(mesh);
             for (row, living) in cells.chunks_mut(blocks).enumerate() {
-                look_closer(closer, mesh.start_pixels(row as u32), living, quarters);
+                look_closer(closer, mesh.start_pixels(row as u32), worth_it, living, quarters);
             }
         }
         self.anywhere = 0;
@@ -162,22 +163,31 @@ impl Group {
     }
 }
 
-/// Looks closer at those cells of a row that are worth it: neighbouring ones together.
+/// Looks closer at those cells of a row where so many colours live: neighbouring ones together.
 #[inline(always)]
-fn look_closer(closer: Closer<'_>, starts: Range<u32>, row: &mut [Colours], quarters: &mut Quarters) {
+fn look_closer(
+    closer: Closer<'_>,
+    starts: Range<u32>,
+    worth_it: u32,
+    row: &mut [Colours],
+    quarters: &mut Quarters,
+) {
+    let is_worth_it = |living: &Colours| living.count_ones() >= worth_it;
     let mut from = 0;
-    while let Some(ahead) = row[from..].iter().position(|&living| is_worth_a_look(living)) {
+    while let Some(ahead) = row[from..].iter().position(is_worth_it) {
         let start = from + ahead;
-        let length = row[start..].iter().take_while(|&&living| is_worth_a_look(living)).count();
+        let length = row[start..].iter().take_while(|living| is_worth_it(living)).count();
         from = start + length;
         quarters.look(closer, starts.clone(), start..from, &mut row[start..from]);
     }
 }
 
-/// Whether several colours live in a cell: a single one is refuted, or tested, at less cost.
+/// So many colours must live in a cell for a closer look. Means of whole windows leave hardly more than borders between
+/// surfaces, which it rules out; sub-blocks leave whole surfaces of nearly a colour, and of a single one these are refuted at
+/// less cost.
 #[inline(always)]
-fn is_worth_a_look(living: Colours) -> bool {
-    living.count_ones() > 1
+fn least_worth_a_look(mesh: Mesh) -> u32 {
+    if mesh.is_of_windows() { 1 } else { 2 }
 }
 
 /// The pass over the frame for all landmarks that were added.
