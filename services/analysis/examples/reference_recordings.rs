@@ -142,7 +142,7 @@ impl Drives {
         let registration = registration_to_wire("front", &outcome, &[]);
         self.store("/follower/camera/front/registration", late, &registration, Latch::None);
         self.store("/follower/camera/front/annotations", late, &annotations(&outcome), Latch::None);
-        let state = follow_state_to_wire("front", follow.options(), &follow.state());
+        let state = follow_state_to_wire("front", follow.options(), follow.state());
         let latch = Latch::Snapshot { key: LatchKey("follow".to_owned()), of: IMAGE_TOPIC.into() };
         self.store("/follower/camera/front/follow", late, &state, latch);
         Ok(())

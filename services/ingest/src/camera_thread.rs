@@ -97,6 +97,7 @@ impl CameraThread {
             outlets,
             counters: Arc::clone(&counters),
             pixels: Vec::new(),
+            spare_state: FollowState::default(),
         };
         let thread = std::thread::Builder::new().name(format!("camera {id}")).spawn({
             let mailbox = Arc::clone(&mailbox);
@@ -130,7 +131,10 @@ struct Worker {
     landmarks: watch::Receiver<Arc<LandmarkSet>>,
     outlets: Outlets,
     counters: Arc<CameraCounters>,
+    /// Memory of the last frame's pixels.
     pixels: Vec<u8>,
+    /// Memory of an earlier result's state.
+    spare_state: FollowState,
 }
 
 impl Worker {
@@ -163,18 +167,24 @@ impl Worker {
         let finished_at = Instant::now();
         self.pixels = frame.into_rgb();
         let (decode_time, register_time) = (decoded - started, finished_at - decoded);
-        let state = self.follow.state();
+        let mut state = std::mem::take(&mut self.spare_state);
+        state.clone_from(self.follow.state());
         let landmarks = Arc::clone(&self.in_force);
         Ok(Registered { picture, landmarks, outcome, state, decode_time, register_time, finished_at })
     }
 
-    fn hand_on(&self, registered: Registered) {
+    /// Takes the memory of the result before back, where nobody looks at that any more.
+    fn hand_on(&mut self, registered: Registered) {
         let registered = Arc::new(registered);
         self.counters.registered.fetch_add(1, Ordering::Relaxed);
         if self.outlets.every.try_send(Arc::clone(&registered)).is_err() {
             self.counters.unread.fetch_add(1, Ordering::Relaxed);
         }
-        self.outlets.latest.send_replace(Some(registered));
+        let before = self.outlets.latest.send_replace(Some(registered));
+        if let Some(Registered { outcome, state, .. }) = before.and_then(Arc::into_inner) {
+            self.follow.recycle(outcome);
+            self.spare_state = state;
+        }
     }
 }
 

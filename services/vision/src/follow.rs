@@ -204,8 +204,8 @@ impl Follow {
 
     /// All that later frames depend on.
     #[must_use]
-    pub fn state(&self) -> FollowState {
-        self.state.clone()
+    pub fn state(&self) -> &FollowState {
+        &self.state
     }
 
     /// Registers every landmark in `frame`.

@@ -9,8 +9,8 @@ use std::cell::Cell;
 use scene::signs::{self, Sign};
 use scene::{Block, GREY, RED, picture, red_landmark, set_of, stamp};
 use vision::{
-    ColorStats, Digest, Follow, FollowOptions, Frame, Landmark, LandmarkOutcome, Mode, NoProbe, Outcome,
-    RectPx, Request, ShapeClass, WindowPx, Workspace, register, register_all,
+    ColorStats, Digest, Follow, FollowOptions, FollowState, Frame, Landmark, LandmarkOutcome, Mode, NoProbe,
+    Outcome, RectPx, Request, ShapeClass, WindowPx, Workspace, register, register_all,
 };
 
 thread_local! {
@@ -106,7 +106,8 @@ fn registration_allocates_nothing_in_the_steady_state() {
     assert_eq!(counted, 0, "allocations in {} frames", frames.len());
 }
 
-/// Follows landmarks to and fro over the frames, gives every outcome back, and counts what the last turn asked for.
+/// Follows landmarks to and fro over the frames, copies the state after each, gives every outcome back, and counts what the
+/// last turn asked for.
 /// `check` is shown every outcome, the first of each turn as number 0.
 fn allocations_of_following(
     mode: Mode,
@@ -115,12 +116,13 @@ fn allocations_of_following(
     mut check: impl FnMut(usize, &Outcome),
 ) -> u64 {
     let mut follow = Follow::new(FollowOptions { mode, ..FollowOptions::default() }, set_of(landmarks));
-    let mut sequence = 0;
+    let (mut sequence, mut state) = (0, FollowState::default());
     let mut turn = || {
         for (number, frame) in frames.iter().chain(frames.iter().rev()).enumerate() {
             sequence += 1;
             let outcome = follow.on_frame(frame, stamp(sequence), &mut NoProbe);
             check(number, &outcome);
+            state.clone_from(follow.state());
             follow.recycle(outcome);
         }
     };

@@ -170,7 +170,7 @@ fn a_state_taken_between_frames_continues_as_if_nothing_had_happened() {
         for k in 0..6 {
             whole.on_frame(&picture(&[moving(k)], 1.0, k), stamp(k), &mut NoProbe);
         }
-        let mut resumed = Follow::restore(options, set, whole.state());
+        let mut resumed = Follow::restore(options, set, whole.state().clone());
         for k in 6..12 {
             let frame = picture(&[moving(k)], 1.0, k);
             let outcomes =

@@ -192,7 +192,7 @@ struct Camera {
 impl Camera {
     fn look_at(&mut self, frame: &Frame, stamp: FrameStamp) -> Outcome {
         let outcome = self.follow.on_frame(frame, stamp, &mut NoProbe);
-        self.late.push_back((outcome.clone(), self.follow.state()));
+        self.late.push_back((outcome.clone(), self.follow.state().clone()));
         outcome
     }
 

@@ -12,8 +12,9 @@ const HAZE_RATE: f32 = 0.4;
 /// No more haze than this is believed, levels.
 const MOST_HAZE: f32 = 60.0;
 
-/// The state of a [`Follow`](super::Follow) between two frames.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// The state of a [`Follow`](super::Follow) between two frames. Cloned from another one into an older one it asks for no
+/// memory but for what is new.
+#[derive(Debug, Default, PartialEq)]
 pub struct FollowState {
     /// The last frame seen.
     pub last: Option<FrameStamp>,
@@ -26,7 +27,7 @@ pub struct FollowState {
 }
 
 /// What is known of one landmark's objects.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub struct LandmarkState {
     /// The landmark's id.
     pub id: String,
@@ -59,6 +60,36 @@ pub struct Track {
     pub sightings: u32,
     /// Frames since it was last seen.
     pub misses: u32,
+}
+
+impl Clone for FollowState {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        let Self { last, noise_variance, turn, landmarks } = source;
+        (self.last, self.noise_variance, self.turn) = (*last, *noise_variance, *turn);
+        self.landmarks.clone_from(landmarks);
+    }
+}
+
+impl Clone for LandmarkState {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        let Self { id, digest, next_instance, frames_since_search, tracks } = source;
+        self.id.clone_from(id);
+        (self.digest, self.next_instance) = (*digest, *next_instance);
+        self.frames_since_search = *frames_since_search;
+        self.tracks.clone_from(tracks);
+    }
 }
 
 /// What a sighting says of the motion.
