@@ -84,21 +84,26 @@ impl Hough {
         for _ in 0..MOST_SEGMENTS {
             let bin = self.votes.fullest_bin();
             // A side of that many pixels leaves at least half of them in the fullest of the bins it spreads over.
-            if (left as f64) < shortest || f64::from(bin.votes) < shortest / 2.0 {
+            if f64::from(bin.votes) < shortest / 2.0 {
                 return;
             }
             let segment = self.refined(outline, bin);
-            for at in (segment.first..segment.first + segment.span).map(|at| at % outline.pixels().len()) {
+            if segment.span > 0 && segment.length() >= shortest {
+                self.segments.push(segment);
+            }
+            let pixels = segment.first..segment.first + segment.span;
+            left -= pixels.clone().filter(|at| self.border.is_free(at % outline.pixels().len())).count();
+            if (left as f64) < shortest {
+                return;
+            }
+            for at in pixels.map(|at| at % outline.pixels().len()) {
                 if self.border.take(at) {
                     let (pixel, reach) = self.border.pixel(at);
                     self.votes.add(pixel, reach, -1);
-                    left -= 1;
                 }
             }
             if segment.span == 0 {
                 self.votes.forget(bin);
-            } else if segment.length() >= shortest {
-                self.segments.push(segment);
             }
         }
     }

@@ -87,6 +87,11 @@ impl Border {
         (x - f64::from(self.origin.0), y - f64::from(self.origin.1))
     }
 
+    /// Whether pixel `at` belongs to no segment yet.
+    pub(super) fn is_free(&self, at: usize) -> bool {
+        self.free[at] == 1
+    }
+
     /// Whether pixel `at` was free, which it is no more.
     pub(super) fn take(&mut self, at: usize) -> bool {
         std::mem::replace(&mut self.free[at], 0) == 1
