@@ -15,6 +15,8 @@ pub(crate) mod like;
 pub(crate) mod likeness;
 pub(crate) mod memory;
 mod mixture;
+mod nearer;
+mod neighbours;
 pub(crate) mod noise;
 pub(crate) mod palette;
 pub(crate) mod patch;
@@ -25,6 +27,7 @@ pub(crate) mod sharpness;
 mod soft_edge;
 mod tracing;
 mod window;
+mod word;
 
 pub(crate) use candidate::{Candidate, Finder, Search};
 pub(crate) use coarse::Coarse;

@@ -116,16 +116,21 @@ fn roundness(hull: &[PointPx], area_px2: f32) -> f32 {
 }
 
 fn elongation(object: &Patch<'_>) -> f32 {
-    let (mut n, mut sx, mut sy, mut xx, mut xy, mut yy) = (0.0_f64, 0.0, 0.0, 0.0, 0.0, 0.0);
-    for (x, y) in object.set_places() {
-        let (x, y) = (f64::from(x), f64::from(y));
-        n += 1.0;
-        sx += x;
-        sy += y;
-        xx += x * x;
-        xy += x * y;
-        yy += y * y;
-    }
+    // Sums of whole numbers up to an end, of which differences are sums over a run.
+    let firsts = |end: u64| end * end.saturating_sub(1) / 2;
+    let squares = |end: u64| firsts(end) * (2 * end).saturating_sub(1) / 3;
+    let (mut n, mut sx, mut sy, mut xx, mut xy, mut yy) = (0, 0, 0, 0, 0, 0);
+    object.each_run(|run| {
+        let (start, end, y) = (u64::from(run.x_start), u64::from(run.x_end), u64::from(run.y));
+        let (pixels, columns) = (end - start, firsts(end) - firsts(start));
+        n += pixels;
+        sx += columns;
+        sy += pixels * y;
+        xx += squares(end) - squares(start);
+        xy += columns * y;
+        yy += pixels * y * y;
+    });
+    let [n, sx, sy, xx, xy, yy] = [n, sx, sy, xx, xy, yy].map(|sum| sum as f64);
     // One twelfth is the second moment of a pixel itself.
     let (xx, yy, xy) = (
         xx / n - (sx / n).powi(2) + 1.0 / 12.0,
@@ -288,11 +293,7 @@ pub(super) fn variance_excess(search: &Search<'_>, observed: &ColorStats) -> f32
 fn isolation(search: &Search<'_>, object: &Patch<'_>) -> f32 {
     let inner = object.dilated(2);
     let ring = inner.dilated(2).without(&inner);
-    let (mut like, mut all) = (0.0_f32, 0.0_f32);
-    for (x, y) in ring.set_places() {
-        let pixel = search.frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32);
-        like += if search.likeness.matches(pixel) { 1.0 } else { 0.0 };
-        all += 1.0;
-    }
+    let like = ring.judged(search.frame, &search.likeness).count() as f32;
+    let all = ring.count() as f32;
     if all == 0.0 { 1.0 } else { 1.0 - like / all }
 }

@@ -9,6 +9,8 @@ use super::face::PAIRS;
 /// Pixels looked at together.
 pub(crate) const RUN_PX: usize = 32;
 const RUN_BYTES: usize = 3 * RUN_PX;
+/// Two bytes more, for the channels of the byte that is last.
+const SEEN_BYTES: usize = RUN_BYTES + 2;
 
 /// 0xff for the bytes that begin a pixel.
 const PIXEL_STARTS: [u8; RUN_BYTES] = {
@@ -52,20 +54,26 @@ impl Coarse {
         self.tint = tint.map(least);
     }
 
-    /// Whether a pixel of these may match. At most [`RUN_PX`] pixels; of fewer, what lies behind them counts as black.
+    /// Whether one of the first [`RUN_PX`] of these pixels may match; where there are fewer, black ones count, too.
     #[inline(always)]
     pub(crate) fn may_match(&self, rgb: &[u8]) -> bool {
-        // Two bytes more, for the channels of the byte that is last.
-        let mut bytes = [0_u8; RUN_BYTES + 2];
-        let length = rgb.len().min(RUN_BYTES);
-        bytes[..length].copy_from_slice(&rgb[..length]);
+        let padded: [u8; SEEN_BYTES];
+        let bytes = match rgb.first_chunk() {
+            Some(bytes) => bytes,
+            None => {
+                let mut bytes = [0; SEEN_BYTES];
+                bytes[..rgb.len()].copy_from_slice(rgb);
+                padded = bytes;
+                &padded
+            }
+        };
         let mut any = false;
         // No iterators: their closures are not compiled for the instructions of the caller.
         for bounds in &self.boxes {
-            any |= bounds.holds_any(&bytes);
+            any |= bounds.holds_any(bytes);
         }
         if let Some(tint) = &self.tint {
-            any |= tint.holds_any(&bytes);
+            any |= tint.holds_any(bytes);
         }
         any
     }
@@ -87,8 +95,8 @@ impl Box3 {
     }
 
     #[inline(always)]
-    fn holds_any(&self, bytes: &[u8; RUN_BYTES + 2]) -> bool {
-        let mut inside = [0_u8; RUN_BYTES + 2];
+    fn holds_any(&self, bytes: &[u8; SEEN_BYTES]) -> bool {
+        let mut inside = [0_u8; SEEN_BYTES];
         for at in 0..RUN_BYTES {
             inside[at] = u8::from(bytes[at].wrapping_sub(self.low[at]) <= self.reach[at]);
         }
@@ -102,7 +110,7 @@ impl Box3 {
 
 impl Differences {
     #[inline(always)]
-    fn holds_any(&self, bytes: &[u8; RUN_BYTES + 2]) -> bool {
+    fn holds_any(&self, bytes: &[u8; SEEN_BYTES]) -> bool {
         let mut inside = PIXEL_STARTS;
         for (&(a, b), &least) in PAIRS.iter().zip(&self.least) {
             if least == 0 {

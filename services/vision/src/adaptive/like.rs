@@ -15,7 +15,7 @@ use super::coarse::{Coarse, RUN_PX};
 
 /// Rows of which one is looked at first.
 const BAND: u32 = 3;
-/// Regions of fewer pixels are asked pixel by pixel.
+/// Regions of fewer pixels are looked at row by row.
 const LARGE_PX: u64 = 40_000;
 /// Columns of a word.
 const WORD_PX: u32 = 64;
@@ -28,8 +28,8 @@ pub(crate) struct Marker {
     bits: Vec<u64>,
     /// The words of a band's rows that are asked.
     wanted: Vec<u64>,
-    /// For each band and word whether a pixel of the band's middle row matches.
-    alive: Vec<bool>,
+    /// For each band and word 1 where a pixel of the band's middle row matches, and 0 elsewhere.
+    alive: Vec<u8>,
 }
 
 impl Marker {
@@ -45,11 +45,12 @@ impl Marker {
         let words = region.width.div_ceil(WORD_PX) as usize;
         self.bits.clear();
         self.bits.resize(words, 0);
+        likeness.enclose_in(&mut self.coarse);
         if u64::from(region.width) * u64::from(region.height) < LARGE_PX {
-            self.bits.fill(u64::MAX);
             for y in 0..region.height {
-                self.mark_row(frame, region, likeness, y, mask);
-                self.bits.fill(u64::MAX);
+                self.bits.fill(0);
+                self.lanes.like_words(row_of(frame, region, y), &self.coarse, likeness, &mut self.bits);
+                self.add_row(y, mask);
             }
             return;
         }
@@ -97,6 +98,10 @@ impl Marker {
         mask: &mut BitMask,
     ) {
         self.lanes.like_bits(row_of(frame, region, y), likeness, &mut self.bits);
+        self.add_row(y, mask);
+    }
+
+    fn add_row(&self, y: u32, mask: &mut BitMask) {
         for (word, &bits) in self.bits.iter().enumerate() {
             if bits != 0 {
                 mask.or_word(y, word as u32, bits);
@@ -105,14 +110,13 @@ impl Marker {
     }
 
     fn sift(&mut self, frame: &Frame, region: RectPx, likeness: &Likeness<'_>) {
-        likeness.enclose_in(&mut self.coarse);
         self.alive.clear();
         let mut y = (BAND / 2).min(region.height - 1);
         for _ in 0..region.height.div_ceil(BAND) {
             self.bits.fill(0);
             let row = row_of(frame, region, y.min(region.height - 1));
             self.lanes.like_words(row, &self.coarse, likeness, &mut self.bits);
-            self.alive.extend(self.bits.iter().map(|&bits| bits != 0));
+            self.alive.extend(self.bits.iter().map(|&bits| u8::from(bits != 0)));
             y += BAND;
         }
     }
@@ -120,14 +124,15 @@ impl Marker {
     /// Makes `bits` all ones for the words of a band in which, or next to which, something is alive. Whether there are any.
     fn choose_words(&mut self, band: usize, bands: usize, words: usize) -> bool {
         let near = band.saturating_sub(1)..(band + 2).min(bands);
-        let mut any = false;
+        if !self.alive[near.start * words..near.end * words].contains(&1) {
+            return false;
+        }
         for word in 0..words {
             let columns = word.saturating_sub(1)..(word + 2).min(words);
-            let wanted = near.clone().any(|band| self.alive[band * words..][columns.clone()].contains(&true));
+            let wanted = near.clone().any(|band| self.alive[band * words..][columns.clone()].contains(&1));
             self.bits[word] = if wanted { u64::MAX } else { 0 };
-            any |= wanted;
         }
-        any
+        true
     }
 }
 
@@ -148,10 +153,11 @@ pub(crate) fn like_bits(row: &[u8], likeness: &Likeness<'_>, bits: &mut [u64]) {
 /// Sets in `bits` the pixels of a row that match.
 #[inline(always)]
 pub(crate) fn like_words(row: &[u8], coarse: &Coarse, likeness: &Likeness<'_>, bits: &mut [u64]) {
-    for (bits, pixels) in bits.iter_mut().zip(row.chunks(3 * WORD_PX as usize)) {
+    for (bits, (at, pixels)) in bits.iter_mut().zip(row.chunks(3 * WORD_PX as usize).enumerate()) {
+        let first = 3 * WORD_PX as usize * at;
         let mut any = false;
-        for run in pixels.chunks(3 * RUN_PX) {
-            any |= coarse.may_match(run);
+        for run in (0..pixels.len()).step_by(3 * RUN_PX) {
+            any |= coarse.may_match(&row[first + run..]);
         }
         if any {
             *bits = likeness.matching(pixels);

@@ -4,6 +4,8 @@ use super::coarse::Coarse;
 use super::face::{self, Face};
 use super::memory::{CollectIn, List, Memory};
 use super::palette::{dot, minus};
+use super::patch::Judge;
+use super::word::{self, WORD_PX};
 use crate::landmark::{ColorStats, Landmark};
 
 /// The mean tolerance is kept between these, levels: below, JPEG noise defeats it; above, everything matches.
@@ -184,43 +186,25 @@ impl<'m> Likeness<'m> {
     /// [`matches`](Self::matches), written so that compilers take many pixels at a time.
     #[inline(always)]
     pub(crate) fn matching(&self, rgb: &[u8]) -> u64 {
-        // Loops by index throughout: iterators' closures are not compiled for the instructions of the caller.
-        let mut levels = [[0.0_f32; 64]; 3];
-        let pixels = rgb.as_chunks::<3>().0;
-        for at in 0..pixels.len().min(64) {
-            for c in 0..3 {
-                levels[c][at] = pixels[at][c] as f32;
-            }
-        }
-        let mut found = [0_u8; 64];
+        let levels = word::split(rgb);
+        let mut found = [0; WORD_PX];
         for cone in &self.cones[..self.asked] {
-            for at in 0..64 {
+            for at in 0..WORD_PX {
                 found[at] |= cone.holds([levels[0][at], levels[1][at], levels[2][at]]) as u8;
             }
         }
         if let Some(face) = &self.face {
-            for at in 0..64 {
+            for at in 0..WORD_PX {
                 found[at] |= face.has_tint([levels[0][at], levels[1][at], levels[2][at]]) as u8;
             }
         }
-        let mut bits = 0;
-        for (at, flags) in found.as_chunks::<8>().0.iter().enumerate() {
-            // Gathers the lowest bit of each of eight bytes into one byte.
-            let gathered = u64::from_le_bytes(*flags).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-            bits |= gathered << (8 * at);
-        }
-        if rgb.len() >= 192 { bits } else { bits & ((1 << (rgb.len() / 3)) - 1) }
+        word::packed(&found) & word::existing(rgb)
     }
 
     /// Makes `coarse` tell at a glance that no pixel of a run matches.
     pub(crate) fn enclose_in(&self, coarse: &mut Coarse) {
         let boxes = self.cones[..self.asked].iter().map(Cone::bounds);
         coarse.enclose(boxes, self.face.as_ref().map(Face::least_differences));
-    }
-
-    /// Whether a colour is a vivid shade's with more light on it than a whole object gets: a face turned to the light.
-    pub(crate) fn is_lit_face(&self, pixel: [u8; 3]) -> bool {
-        self.cones.iter().any(|cone| cone.is_lit_face(pixel.map(f32::from)))
     }
 
     /// The means of the shades.
@@ -240,6 +224,9 @@ impl<'m> Likeness<'m> {
 
     /// White that a colour has more than the descriptor's nearest shade, levels.
     pub(crate) fn haze(&self, color: [f32; 3]) -> f32 {
+        if let [only] = self.cones {
+            return only.haze_of(color);
+        }
         self.nearest_cone(color).map_or(0.0, |(cone, _)| cone.haze_of(color))
     }
 
@@ -252,6 +239,32 @@ impl<'m> Likeness<'m> {
     fn nearest_cone(&self, color: [f32; 3]) -> Option<(&Cone, Match)> {
         let compared = self.cones.iter().map(|cone| (cone, cone.compare(color)));
         compared.min_by(|(_, a), (_, b)| a.excess.total_cmp(&b.excess))
+    }
+}
+
+impl Judge for Likeness<'_> {
+    #[inline(always)]
+    fn wanted(&self, rgb: &[u8]) -> u64 {
+        self.matching(rgb)
+    }
+}
+
+/// Tells vivid shades' colours with more light on them than a whole object gets: faces turned to the light.
+pub(crate) struct LitFaces<'a>(pub(crate) &'a Likeness<'a>);
+
+impl Judge for LitFaces<'_> {
+    #[inline(always)]
+    fn wanted(&self, rgb: &[u8]) -> u64 {
+        let levels = word::split(rgb);
+        let mut found = [0; WORD_PX];
+        for cone in self.0.cones {
+            if cone.is_vivid() {
+                for at in 0..WORD_PX {
+                    found[at] |= cone.is_lit([levels[0][at], levels[1][at], levels[2][at]]) as u8;
+                }
+            }
+        }
+        word::packed(&found)
     }
 }
 
@@ -274,16 +287,24 @@ impl Cone {
         (self.haze * apart + dot(rest, white) / gain) / (apart + HAZE_PRIOR)
     }
 
-    fn is_lit_face(&self, color: [f32; 3]) -> bool {
-        let (least, most) = self
-            .shade
-            .iter()
-            .fold((f32::MAX, 0.0_f32), |(low, high), &level| (low.min(level), high.max(level)));
-        let gain = (0..3).map(|c| color[c] * self.onto_shade[c]).sum::<f32>();
-        let off2 = (0..3).map(|c| (color[c] - gain * self.shade[c]).powi(2)).sum::<f32>();
+    fn is_vivid(&self) -> bool {
+        let spread = |(low, high): (f32, f32), level: f32| (low.min(level), high.max(level));
+        let (least, most) = self.shade.iter().copied().fold((f32::MAX, 0.0), spread);
         most - least >= VIVID * most
-            && (1.0..MOST_LIT * self.gain.1).contains(&gain)
-            && off2 <= LIT_SPREAD * LIT_SPREAD
+    }
+
+    /// Whether a colour is the shade's with more light on it than a whole object gets.
+    #[inline(always)]
+    fn is_lit(&self, color: [f32; 3]) -> bool {
+        let [r, g, b] = self.onto_shade;
+        let gain = color[0] * r + color[1] * g + color[2] * b;
+        let off = [
+            color[0] - gain * self.shade[0],
+            color[1] - gain * self.shade[1],
+            color[2] - gain * self.shade[2],
+        ];
+        let off2 = off[0] * off[0] + off[1] * off[1] + off[2] * off[2];
+        (gain >= 1.0) & (gain < MOST_LIT * self.gain.1) & (off2 <= LIT_SPREAD * LIT_SPREAD)
     }
 
     /// Whether a colour lies in the cone.

@@ -11,20 +11,24 @@ pub(crate) fn variance(frame: &Frame) -> [f32; 3] {
     if frame.width() < 3 || frame.height() == 0 {
         return [0.0; 3];
     }
-    std::array::from_fn(|channel| channel_variance(frame, channel))
-}
-
-fn channel_variance(frame: &Frame, channel: usize) -> f32 {
     // Second differences lie within ±510; their squares are ordered as their sizes are.
-    let mut counts = [0_u16; 511];
+    let mut counts = [[0_u16; 511]; 3];
+    let columns: [usize; GRID as usize] =
+        std::array::from_fn(|i| ((2 * i as u32 + 1) * (frame.width() - 2) / (2 * GRID)) as usize);
     for j in 0..GRID {
         let row = frame.row((2 * j + 1) * frame.height() / (2 * GRID));
-        for i in 0..GRID {
-            let x = ((2 * i + 1) * (frame.width() - 2) / (2 * GRID)) as usize;
-            let level = |k: usize| i32::from(row[3 * (x + k) + channel]);
-            counts[(level(0) - 2 * level(1) + level(2)).unsigned_abs() as usize] += 1;
+        for x in columns {
+            let three = &row[3 * x..3 * x + 9];
+            for (channel, counts) in counts.iter_mut().enumerate() {
+                let level = |k: usize| i32::from(three[3 * k + channel]);
+                counts[(level(0) - 2 * level(1) + level(2)).unsigned_abs() as usize] += 1;
+            }
         }
     }
+    counts.map(|counts| variance_of(&counts))
+}
+
+fn variance_of(counts: &[u16; 511]) -> f32 {
     let mut below = 0;
     let passes_middle = |&count: &u16| {
         below += u32::from(count);

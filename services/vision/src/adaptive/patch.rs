@@ -1,10 +1,13 @@
 //! A small binary picture cut out of a frame. Its morphology, parts and hull have files of their own.
 
 mod hull;
+mod judged;
 mod morphology;
 mod parts;
+mod places;
 
 pub(crate) use hull::{enclosing_rectangle_area, polygon_area_and_centroid};
+pub(crate) use judged::Judge;
 
 use std::fmt;
 
@@ -80,17 +83,6 @@ impl<'m> Patch<'m> {
         patch
     }
 
-    /// Those of its pixels for which `keep` holds.
-    pub(crate) fn only(&self, mut keep: impl FnMut(i32, i32) -> bool) -> Self {
-        let mut patch = Self::empty(self.memory, self.rect);
-        for (x, y) in self.set_places() {
-            if keep(x, y) {
-                patch.set(x, y);
-            }
-        }
-        patch
-    }
-
     pub(crate) fn set(&mut self, x: i32, y: i32) {
         debug_assert!((0..self.width()).contains(&x), "column {x} is outside the patch");
         self.row_mut(y as u32)[x as usize / 64] |= 1 << (x % 64);
@@ -99,6 +91,18 @@ impl<'m> Patch<'m> {
     fn set_run(&mut self, y: u32, x_start: u32, x_end: u32) {
         let row = self.row_mut(y);
         words_of_run(x_start, x_end).for_each(|(word, bits)| row[word as usize] |= bits);
+    }
+
+    /// Words in a row.
+    #[inline(always)]
+    pub(crate) fn words_in_row(&self) -> usize {
+        self.words_per_row
+    }
+
+    /// Columns `64 * at` and onwards of a row, the first in bit 0.
+    #[inline(always)]
+    pub(crate) fn word(&self, y: i32, at: usize) -> u64 {
+        self.words[y as usize * self.words_per_row + at]
     }
 
     fn row(&self, y: u32) -> &[u64] {
@@ -131,21 +135,28 @@ impl<'m> Patch<'m> {
     /// All runs of set pixels, from the top, each row from the left.
     pub(crate) fn runs(&self) -> List<'m, Run> {
         let mut runs = List::with_capacity_in(2 * self.rect.height as usize, self.memory);
-        for y in 0..self.rect.height {
-            each_run(y, (0, self.row(y)), self.rect.width, |run| runs.push(run));
-        }
+        self.each_run(|run| runs.push(run));
         runs
     }
 
+    /// Gives them one by one.
+    pub(crate) fn each_run(&self, mut each: impl FnMut(Run)) {
+        for y in 0..self.rect.height {
+            each_run(y, (0, self.row(y)), self.rect.width, &mut each);
+        }
+    }
+
     /// The set pixels among columns `left..left + 64` of a row, the first in bit 0.
+    #[inline]
     pub(crate) fn bits_from(&self, left: i32, y: i32) -> u64 {
-        if y < 0 || y >= self.height() || left <= -64 || left >= self.width() {
+        if !(0..self.height()).contains(&y) {
             return 0;
         }
-        let words = self.row(y as u32);
-        let word = |at: i32| usize::try_from(at).ok().and_then(|at| words.get(at)).copied().unwrap_or(0);
-        let (at, shift) = (left.div_euclid(64), left.rem_euclid(64));
-        if shift == 0 { word(at) } else { word(at) >> shift | word(at + 1) << (64 - shift) }
+        let row = self.row(y as u32);
+        // What lies left of the patch has no word either: its number is beyond all.
+        let word = |at: i32| row.get(at as usize).copied().unwrap_or(0);
+        let (at, shift) = (left >> 6, left & 63);
+        word(at) >> shift | word(at + 1) << 1 << (63 - shift)
     }
 
     /// The rectangle around the set pixels, in the frame; `None` of nothing.
@@ -159,14 +170,6 @@ impl<'m> Patch<'m> {
         }
         let (x, y) = (self.rect.x.wrapping_add(left), self.rect.y.wrapping_add(top));
         (left < right).then(|| RectPx { x, y, width: right - left, height: bottom - top })
-    }
-
-    /// The set pixels' places in the patch.
-    pub(crate) fn set_places(&self) -> impl Iterator<Item = (i32, i32)> + '_ {
-        (0..self.rect.height).flat_map(move |y| {
-            let words = self.row(y).iter().enumerate();
-            words.flat_map(move |(at, &word)| set_bits(word).map(move |bit| (64 * at as i32 + bit, y as i32)))
-        })
     }
 
     /// Whether a set pixel lies on the border of a picture of that size.
@@ -192,15 +195,6 @@ impl fmt::Debug for Patch<'_> {
         let Self { rect, words_per_row: _, words, memory: _ } = self;
         f.debug_struct("Patch").field("rect", rect).field("words", words).finish_non_exhaustive()
     }
-}
-
-/// The numbers of the set bits.
-pub(crate) fn set_bits(mut word: u64) -> impl Iterator<Item = i32> {
-    std::iter::from_fn(move || {
-        let bit = word.trailing_zeros();
-        word &= word.wrapping_sub(1);
-        (bit < 64).then_some(bit as i32)
-    })
 }
 
 #[cfg(test)]

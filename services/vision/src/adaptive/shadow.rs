@@ -49,10 +49,15 @@ pub(super) struct Cast<'s> {
 
 impl Cast<'_> {
     /// Squared distance of a colour from the nearest mixture of shadow and surface, levels².
+    #[inline(always)]
     pub(super) fn distance2(&self, color: [f32; 3]) -> f32 {
         let (along, from) = (minus(self.surface, self.shadow), minus(color, self.shadow));
-        let part = (dot(from, along) / dot(along, along).max(1.0)).clamp(0.0, 1.0);
-        let off = minus(from, along.map(|level| part * level));
+        let length2 = dot(along, along);
+        let part = dot(from, along) / if length2 > 1.0 { length2 } else { 1.0 };
+        // Plainer than `f32::clamp` and `map`, so that compilers take many at a time.
+        let part = if part > 0.0 { part } else { 0.0 };
+        let part = if part < 1.0 { part } else { 1.0 };
+        let off = minus(from, [part * along[0], part * along[1], part * along[2]]);
         dot(off, off)
     }
 }

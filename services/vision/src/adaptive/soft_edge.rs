@@ -2,13 +2,12 @@
 //!
 //! That part is told from the pixel's colour, between the object's colour next to it and the background's next to it.
 
+use super::neighbours::{Around, around};
 use super::palette::{dot, levels, minus};
-use super::patch::{Patch, set_bits};
+use super::patch::Patch;
 use crate::frame::Frame;
 use crate::geometry::PointPx;
 
-/// How far a pure neighbour may be from an edge pixel, px.
-const REACH: i32 = 4;
 /// Object and background nearer than this cannot be told apart by mixing, levels².
 const LEAST_CONTRAST2: f32 = 150.0;
 /// A border nearer than this to the background is not looked for, levels².
@@ -30,18 +29,22 @@ pub(crate) enum Edge {
 
 /// Centre of gravity and area of the object with soft edges; `None` of nothing.
 pub(crate) fn centroid_and_area(frame: &Frame, object: &Patch<'_>, edge: Edge) -> Option<(PointPx, f32)> {
-    let inside = object.eroded(2);
-    let inside = if inside.count() >= 6 { inside } else { object.eroded(1) };
     let inner = object.eroded(1);
+    let deep = inner.eroded(1);
+    let inside = if deep.count() >= 6 { &deep } else { &inner };
     let width_px = match edge {
         Edge::Plain => 1,
         Edge::Bordered { width_px, .. } => width_px,
     };
     let outer = object.dilated(width_px);
     let background = outer.dilated(1).inverted();
-    let pure = Pure { frame, object, inside: &inside, background: &background };
+    let rim = outer.without(&inner);
     let mut moments = Moments::of(&inner);
-    outer.without(&inner).set_places().for_each(|place| moments.add(place, pure.covered_share(place, edge)));
+    for (place, around) in rim.set_places().zip(around(frame, &rim, inside, &background)) {
+        let mixed =
+            Mixed { color: color_at(frame, object, place), hard: object.get(place.0, place.1), around };
+        moments.add(place, mixed.covered_share(edge));
+    }
     moments.centre_in(object).map(|centre| (centre, moments.weight as f32))
 }
 
@@ -57,12 +60,13 @@ pub(crate) fn within_border(
     let inner = object.eroded(1);
     let outer = object.dilated(width_px);
     let background = outer.dilated(1).inverted();
-    let pure = Pure { frame, object, inside: &inner, background: &background };
+    let edge = outer.without(&inner);
     let mut moments = Moments::of(&inner);
     let rim = object.dilated(1).without(object);
     let (mut seen, mut length) = (0.0_f32, 0.0_f32);
-    for (x, y) in outer.without(&inner).set_places() {
-        let (own, border) = pure.shares_with_border((x, y), own, border);
+    for ((x, y), around) in edge.set_places().zip(around(frame, &edge, &inner, &background)) {
+        let mixed = Mixed { color: color_at(frame, object, (x, y)), hard: object.get(x, y), around };
+        let (own, border) = mixed.shares_with_border(own, border);
         moments.add((x, y), own);
         if let Some(border) = border {
             seen += border;
@@ -84,9 +88,16 @@ struct Moments {
 impl Moments {
     /// Of pixels that count wholly.
     fn of(pixels: &Patch<'_>) -> Self {
-        let mut moments = Self { weight: 0.0, x: 0.0, y: 0.0 };
-        pixels.set_places().for_each(|place| moments.add(place, 1.0));
-        moments
+        let (mut n, mut columns, mut rows) = (0, 0, 0);
+        pixels.each_run(|run| {
+            let length = u64::from(run.length());
+            n += length;
+            columns += length * u64::from(run.x_start + run.x_end - 1) / 2;
+            rows += length * u64::from(run.y);
+        });
+        // Whole and half numbers: these sums are exact.
+        let half = 0.5 * n as f64;
+        Self { weight: n as f64, x: columns as f64 + half, y: rows as f64 + half }
     }
 
     fn add(&mut self, (x, y): (i32, i32), share: f32) {
@@ -104,47 +115,46 @@ impl Moments {
     }
 }
 
-/// Where only the object and where only the background shows.
-struct Pure<'a> {
-    frame: &'a Frame,
-    object: &'a Patch<'a>,
-    inside: &'a Patch<'a>,
-    background: &'a Patch<'a>,
+/// A pixel on the edge of an object.
+struct Mixed {
+    color: [f32; 3],
+    /// Whether it counts as the object's where nothing tells its part.
+    hard: bool,
+    around: Around,
 }
 
-impl Pure<'_> {
-    /// The part of an edge pixel that shows the object, 0..1.
-    fn covered_share(&self, (x, y): (i32, i32), edge: Edge) -> f32 {
-        let hard = if self.object.get(x, y) { 1.0 } else { 0.0 };
-        let own = local_mean(self.frame, self.inside, (x, y));
-        let other = local_mean(self.frame, self.background, (x, y));
-        let (Some(own), Some(other)) = (own, other) else { return hard };
-        let rect = self.object.rect;
-        let color = levels(self.frame.pixel(rect.x + x as u32, rect.y + y as u32));
-        let plain = share_between(color, own, other).unwrap_or(hard);
+impl Mixed {
+    /// The part of the pixel that shows the object, 0..1.
+    fn covered_share(&self, edge: Edge) -> f32 {
+        let Around { own: Some(own), other: Some(other) } = self.around else { return self.hard_share() };
+        let plain = share_between(self.color, own, other).unwrap_or(self.hard_share());
         match edge {
             Edge::Plain => plain,
-            Edge::Bordered { color: border, .. } => share_of_two(color, own, border, other)
+            Edge::Bordered { color: border, .. } => share_of_two(self.color, own, border, other)
                 .map_or(plain, |(own, border)| (own + border).clamp(0.0, 1.0)),
         }
     }
 
-    /// The part of an edge pixel that shows the object, and that which shows its border, where that can be told.
-    fn shares_with_border(&self, (x, y): (i32, i32), own: [f32; 3], border: [f32; 3]) -> (f32, Option<f32>) {
-        let hard = if self.object.get(x, y) { 1.0 } else { 0.0 };
-        let other = local_mean(self.frame, self.background, (x, y));
-        let rect = self.object.rect;
-        let color = levels(self.frame.pixel(rect.x + x as u32, rect.y + y as u32));
-        let Some(other) = other else { return (share_between(color, own, border).unwrap_or(hard), None) };
-        match share_of_two(color, own, border, other) {
+    /// The part that shows the object, and that which shows its border, where that can be told.
+    fn shares_with_border(&self, own: [f32; 3], border: [f32; 3]) -> (f32, Option<f32>) {
+        let shares = self.around.other.and_then(|other| share_of_two(self.color, own, border, other));
+        match shares {
             Some((own, border)) => {
                 let own = own.clamp(0.0, 1.0);
                 (own, Some(border.clamp(0.0, 1.0 - own)))
             }
             // The border, if it is one, is of nearly the background's colour.
-            None => (share_between(color, own, border).unwrap_or(hard), None),
+            None => (share_between(self.color, own, border).unwrap_or(self.hard_share()), None),
         }
     }
+
+    fn hard_share(&self) -> f32 {
+        if self.hard { 1.0 } else { 0.0 }
+    }
+}
+
+fn color_at(frame: &Frame, object: &Patch<'_>, (x, y): (i32, i32)) -> [f32; 3] {
+    levels(frame.pixel(object.rect.x + x as u32, object.rect.y + y as u32))
 }
 
 /// The part of `own` in a mixture of `own` and `other`; `None` where they are too much alike.
@@ -166,39 +176,4 @@ fn share_of_two(color: [f32; 3], own: [f32; 3], border: [f32; 3], other: [f32; 3
     let of_own = (dot(p, a) * bb - dot(p, b) * ab) / determinant;
     let of_border = (dot(p, b) * aa - dot(p, a) * ab) / determinant;
     Some((of_own, of_border))
-}
-
-/// What a neighbour at a distance of (dx, dy) weighs: near ones tell more of the light on the edge than far ones.
-const NEARNESS: [[f32; SPAN]; SPAN] = {
-    let mut nearness = [[0.0; SPAN]; SPAN];
-    let mut at = 0;
-    while at < SPAN * SPAN {
-        let (dx, dy) = ((at % SPAN) as i32 - REACH, (at / SPAN) as i32 - REACH);
-        nearness[at / SPAN][at % SPAN] = 1.0 / (1 + dx * dx + dy * dy) as f32;
-        at += 1;
-    }
-    nearness
-};
-const SPAN: usize = 2 * REACH as usize + 1;
-
-/// Mean colour of the pixels of `pure` around a place.
-fn local_mean(frame: &Frame, pure: &Patch<'_>, (x, y): (i32, i32)) -> Option<[f32; 3]> {
-    let (mut sum, mut n) = ([0.0_f32; 3], 0.0_f32);
-    for (row, v) in (y - REACH..=y + REACH).enumerate() {
-        let bits = pure.bits_from(x - REACH, v) & ((1 << SPAN) - 1);
-        if bits == 0 {
-            continue;
-        }
-        let pixels = frame.row(pure.rect.y + v as u32);
-        let left = pure.rect.x as i32 + x - REACH;
-        for column in set_bits(bits) {
-            let nearness = NEARNESS[row][column as usize];
-            let at = 3 * (left + column) as usize;
-            for c in 0..3 {
-                sum[c] += nearness * f32::from(pixels[at + c]);
-            }
-            n += nearness;
-        }
-    }
-    (n > 0.0).then(|| sum.map(|s| s / n))
 }

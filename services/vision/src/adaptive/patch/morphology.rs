@@ -25,15 +25,17 @@ impl Patch<'_> {
 
     /// Makes `across` the set pixels and those `step` columns to both sides of them.
     fn spread_across(&self, step: u32, across: &mut [u64]) {
-        let rows = self.words.chunks_exact(self.words_per_row.max(1));
-        for (row, across) in rows.zip(across.chunks_exact_mut(self.words_per_row.max(1))) {
+        let Some(last) = self.words_per_row.checked_sub(1) else { return };
+        let columns = self.columns_of(last);
+        let rows = self.words.chunks_exact(last + 1);
+        for (row, across) in rows.zip(across.chunks_exact_mut(last + 1)) {
+            let mut left = 0;
             for (at, across) in across.iter_mut().enumerate() {
-                let left = if at > 0 { row[at - 1] } else { 0 };
-                let right = row.get(at + 1).copied().unwrap_or(0);
-                let (later, earlier) =
-                    (row[at] << step | left >> (64 - step), row[at] >> step | right << (64 - step));
-                *across = (row[at] | later | earlier) & self.columns_of(at);
+                let (own, right) = (row[at], if at < last { row[at + 1] } else { 0 });
+                *across = own | own << step | left >> (64 - step) | own >> step | right << (64 - step);
+                left = own;
             }
+            across[last] &= columns;
         }
     }
 
@@ -92,6 +94,11 @@ impl Patch<'_> {
     /// The pixels set here and not in `other`, a patch of the same rectangle.
     pub(crate) fn without(&self, other: &Patch<'_>) -> Self {
         self.combined(other, |own, other| own & !other)
+    }
+
+    /// The pixels set here and in `other`, a patch of the same rectangle.
+    pub(crate) fn within(&self, other: &Patch<'_>) -> Self {
+        self.combined(other, |own, other| own & other)
     }
 
     /// The pixels set here or in `other`, a patch of the same rectangle.
