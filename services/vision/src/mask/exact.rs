@@ -108,6 +108,8 @@ pub(super) struct Test<'a, P: Precision> {
 }
 
 impl<P: Precision> Work for Test<'_, P> {
+    const WIDEST: bool = false;
+
     #[inline(always)]
     fn run(self) {
         let Self { question, area, scratch, mask } = self;

@@ -9,6 +9,10 @@ use crate::adaptive::{Coarse, Likeness, like};
 
 /// Something that may be compiled for any instruction set: every function down to its loops is `inline(always)`.
 pub(crate) trait Work {
+    /// Whether it gains by vectors of 512 bits. With them compilers gather and scatter numbers of 32 bits from chunk to
+    /// chunk, where they should take each chunk as it lies: that takes twice as long.
+    const WIDEST: bool = true;
+
     fn run(self);
 }
 
@@ -58,15 +62,15 @@ impl Lanes {
     }
 
     /// Does `work` with these instructions.
-    pub(crate) fn run(self, work: impl Work) {
+    pub(crate) fn run<W: Work>(self, work: W) {
         match self.0 {
             Set::Baseline => work.run(),
             // SAFETY: a `Lanes` of this set exists only where the processor was found to have it.
             #[cfg(target_arch = "x86_64")]
-            Set::Avx2 => unsafe { run_avx2(work) },
-            // SAFETY: as above.
+            Set::Avx512 if W::WIDEST => unsafe { run_avx512(work) },
+            // SAFETY: as above; and what has the wider ones has these.
             #[cfg(target_arch = "x86_64")]
-            Set::Avx512 => unsafe { run_avx512(work) },
+            Set::Avx2 | Set::Avx512 => unsafe { run_avx2(work) },
         }
     }
 }
