@@ -47,8 +47,7 @@ pub(super) fn around<'s>(
     let memory = pixels.memory();
     let mut found = List::with_capacity_in(pixels.count(), memory);
     if let Some(mut halo) = Halo::empty(memory, pixels) {
-        // In two halves: growing by more than three pixels at once leaves gaps at the patch's border.
-        let near = pixels.dilated(REACH as i32 / 2).dilated(REACH as i32 / 2);
+        let near = pixels.dilated(REACH as i32);
         halo.add(frame, &inside.within(&near), 0);
         halo.add(frame, &background.within(&near), 4);
         Lanes::default().run(Sums { halo: &halo, pixels, found: &mut found });
