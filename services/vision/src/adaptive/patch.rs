@@ -10,6 +10,7 @@ pub(crate) use hull::{enclosing_rectangle_area, polygon_area_and_centroid};
 pub(crate) use judged::Judge;
 
 use std::fmt;
+use std::ops::Range;
 
 use super::memory::{List, Memory};
 use crate::bitmask::{Run, each_run, words_of_run};
@@ -140,8 +141,13 @@ impl<'m> Patch<'m> {
     }
 
     /// Gives them one by one.
-    pub(crate) fn each_run(&self, mut each: impl FnMut(Run)) {
-        for y in 0..self.rect.height {
+    pub(crate) fn each_run(&self, each: impl FnMut(Run)) {
+        self.each_run_of(0..self.rect.height, each);
+    }
+
+    /// Gives those of some rows one by one.
+    pub(crate) fn each_run_of(&self, rows: Range<u32>, mut each: impl FnMut(Run)) {
+        for y in rows {
             each_run(y, (0, self.row(y)), self.rect.width, &mut each);
         }
     }

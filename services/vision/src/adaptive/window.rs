@@ -41,10 +41,11 @@ fn window_of_side(search: &Search<'_>, object: &Patch<'_>, side_px: i32) -> Opti
     let step = (side_px / 2).max(1);
     let mut best: Option<(f32, (i32, i32))> = None;
     let bounds = object.bounds()?;
-    let sums = Sums::of(search.frame, bounds, object.memory());
+    let mut sums = Sums::new(search.frame, bounds, side_px as usize, object.memory());
     let (left, top) = ((bounds.x - object.rect.x) as i32, (bounds.y - object.rect.y) as i32);
     let last = side_px - 1;
     for y in (top..top + bounds.height as i32).step_by(step as usize) {
+        sums.reach((y - top) as usize + side_px as usize);
         for x in (left..left + bounds.width as i32).step_by(step as usize) {
             let corners = [(0, 0), (last, 0), (0, last), (last, last)];
             if !corners.iter().all(|(u, v)| object.get(x + u, y + v)) {
@@ -75,33 +76,43 @@ struct Square {
     side: usize,
 }
 
-/// Sums over stretches of rows, by which windows that overlap cost what one costs.
+/// Sums over stretches of as many rows as a window has, by which windows that overlap cost what one costs.
 struct Sums<'a> {
     frame: &'a Frame,
     bounds: RectPx,
-    /// For each row and each column's left end the sum of R, G, B and R² of the pixels before it.
-    before: &'a [[u32; 4]],
+    /// For each column's left end the sum of R, G, B and R² of the pixels before it; row r in place r modulo the rows.
+    before: &'a mut [[u32; 4]],
+    rows: usize,
+    /// The row after the last one that was read.
+    end: usize,
 }
 
 impl<'a> Sums<'a> {
-    fn of(frame: &'a Frame, bounds: RectPx, memory: &'a Memory) -> Self {
-        let columns = bounds.width as usize + 1;
-        let before = memory.alloc_slice_fill_copy(columns * bounds.height as usize, [0; 4]);
-        for (y, before) in (bounds.y..).zip(before.chunks_exact_mut(columns)) {
-            let row = &frame.row(y)[3 * bounds.x as usize..];
+    /// For windows of so many rows in these bounds.
+    fn new(frame: &'a Frame, bounds: RectPx, rows: usize, memory: &'a Memory) -> Self {
+        let before = memory.alloc_slice_fill_copy((bounds.width as usize + 1) * rows, [0; 4]);
+        Self { frame, bounds, before, rows, end: 0 }
+    }
+
+    /// Goes on to the windows above row `end` of the bounds.
+    fn reach(&mut self, end: usize) {
+        for row in self.end..end.min(self.bounds.height as usize) {
+            let columns = self.bounds.width as usize + 1;
+            let before = &mut self.before[row % self.rows * columns..][..columns];
+            let pixels = &self.frame.row(self.bounds.y + row as u32)[3 * self.bounds.x as usize..];
             let mut sum = [0; 4];
-            for (before, pixel) in before[1..].iter_mut().zip(row.as_chunks::<3>().0) {
+            for (before, pixel) in before[1..].iter_mut().zip(pixels.as_chunks::<3>().0) {
                 let [r, g, b] = pixel.map(u32::from);
                 sum = added(sum, [r, g, b, r * r]);
                 *before = sum;
             }
         }
-        Self { frame, bounds, before }
+        self.end = self.end.max(end);
     }
 
     /// The sums over one row of a window.
     fn of_row(&self, Square { x, y, side }: Square, row: usize) -> [u32; 4] {
-        let before = &self.before[(y + row) * (self.bounds.width as usize + 1) + x..];
+        let before = &self.before[(y + row) % self.rows * (self.bounds.width as usize + 1) + x..];
         let (start, end) = (before[0], before[side]);
         std::array::from_fn(|at| end[at] - start[at])
     }
@@ -174,8 +185,10 @@ mod tests {
             let level = |at: u32| darkest + (noise(at) % (256 - u32::from(darkest))) as u8;
             let frame = Frame::from_rgb(40, 36, (0..3 * 40 * 36).map(level).collect()).unwrap();
             let (memory, bounds) = (Memory::new(), RectPx { x: 4, y: 3, width: 33, height: 31 });
-            let sums = Sums::of(&frame, bounds, &memory);
-            for (x, y) in [(0, 0), (3, 1), (33 - side, 31 - side)] {
+            let mut sums = Sums::new(&frame, bounds, side, &memory);
+            for (x, y) in [(0, 0), (3, 1.min(31 - side)), (33 - side, 31 - side)] {
+                let x = x.min(33 - side);
+                sums.reach(y + side);
                 let window = Square { x, y, side };
                 let stats = window_stats(&frame, (4 + x as u32, 3 + y as u32), side as u32);
                 prop_assert_eq!(sums.mean(window), stats.mean);
