@@ -139,6 +139,21 @@ fn a_block_that_leaves_is_not_claimed_of_what_stays() {
 }
 
 #[test]
+fn a_block_that_is_in_view_elsewhere_is_not_waited_for_where_it_was() {
+    let mut follow = follower();
+    // Small and far away after the leap, it never looks as much like the landmark as it did before.
+    let (before, after) = (Block::square(20.0, 40.0, 26.0, RED), Block::square(150.0, 90.0, 11.0, RED));
+    for k in 0..120 {
+        let block = if k < 30 { before } else { after };
+        let outcome = follow.on_frame(&picture(&[block], 1.0, k), stamp(k), &mut NoProbe);
+        let [(row, _)] = seen(&outcome)[..] else { panic!("frame {k}: {:?}", outcome.landmarks) };
+        assert_eq!(row.instance, u32::from(k >= 30), "frame {k}");
+        let waited_for = outcome.landmarks.len() - 1;
+        assert!(waited_for == 0 || (30..90).contains(&k), "frame {k}: {:?}", outcome.landmarks);
+    }
+}
+
+#[test]
 fn two_blocks_of_one_landmark_keep_their_numbers() {
     let mut follow = follower();
     for k in 0..40 {

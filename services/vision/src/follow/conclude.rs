@@ -26,7 +26,7 @@ const FURTHER_SIGN_SIZE: f32 = 0.01;
 const LOOK_ALIKE_PART: f32 = 0.6;
 /// Further objects below this score are doubtful.
 const DOUBTFUL_SCORE: f32 = 0.6;
-/// Further objects are given up after so many frames unseen; the last one never is.
+/// Objects are given up after so many frames unseen where another one is in view; the last one never is.
 const GIVE_UP_AFTER: u32 = 45;
 
 /// Updates the tracks and reports what was found.
@@ -113,14 +113,14 @@ fn usual_look(state: &LandmarkState) -> UsualLook {
     }
 }
 
-/// Drops objects that stayed unseen, and look-alikes beside something that looks far more like the landmark. The one
-/// that looks most like it is never dropped.
+/// Gives up look-alikes, and further objects that were not seen for long. As long as none is in view the best one is kept.
 fn forget(state: &mut LandmarkState) {
-    let best = state.tracks.iter().map(|track| track.score).fold(0.0, f32::max);
-    state.tracks.retain(|track| {
-        let seen = track.misses < GIVE_UP_AFTER.min(3 + track.sightings);
-        track.score >= best || (seen && track.score >= LOOK_ALIKE_PART * best)
-    });
+    let is_in_view = |track: &Track| track.misses < GIVE_UP_AFTER.min(3 + track.sightings);
+    let any_in_view = state.tracks.iter().any(is_in_view);
+    let counts = |track: &Track| is_in_view(track) || !any_in_view;
+    let best = state.tracks.iter().filter(|track| counts(track)).map(|track| track.score).fold(0.0, f32::max);
+    let least = if any_in_view { LOOK_ALIKE_PART * best } else { best };
+    state.tracks.retain(|track| counts(track) && track.score >= least);
 }
 
 fn advance(
