@@ -256,6 +256,13 @@ impl PartialEq for BitMask {
 
 impl Eq for BitMask {}
 
+/// The lowest bits of eight bytes that are 0 or 1, the first one's lowest.
+#[inline(always)]
+pub(crate) fn lowest_bits(eight: [u8; 8]) -> u64 {
+    // Bit 8j goes to bit 56 + j; nothing else reaches those bits.
+    u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -86,7 +86,7 @@ pub(crate) struct Match {
 }
 
 impl<'m> Likeness<'m> {
-    /// For a search of the whole frame, nothing known of the light but `gain`, its most likely value.
+    /// For a search of the whole frame, nothing known of the light but which is most likely.
     pub(crate) fn anywhere(
         memory: &'m Memory,
         landmark: &Landmark,

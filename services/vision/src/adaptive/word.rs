@@ -3,6 +3,8 @@
 //! Loops go by index and over arrays of fixed size: iterators' closures are not compiled for the instructions of the
 //! caller.
 
+use crate::bitmask::lowest_bits;
+
 /// Pixels in a word.
 pub(crate) const WORD_PX: usize = 64;
 
@@ -42,9 +44,7 @@ pub(crate) fn packed(found: &[u8; WORD_PX]) -> u64 {
     for at in 0..WORD_PX / 8 {
         let mut eight = [0; 8];
         eight.copy_from_slice(&found[8 * at..8 * at + 8]);
-        // Gathers the lowest bit of each of eight bytes into one byte.
-        let gathered = u64::from_le_bytes(eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-        bits |= gathered << (8 * at);
+        bits |= lowest_bits(eight) << (8 * at);
     }
     bits
 }

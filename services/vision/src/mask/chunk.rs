@@ -4,6 +4,7 @@
 //! each loop becomes a few whole instructions, without a remainder even in the narrowest area.
 
 use super::lane::Lane;
+use crate::bitmask::lowest_bits;
 
 /// Columns in a chunk.
 pub(super) const WIDTH: usize = 32;
@@ -63,9 +64,7 @@ pub(super) fn pack<T: Lane>(chunk: Chunk<T>) -> u32 {
     }
     let mut packed = 0;
     for (at, eight) in lowest.as_chunks::<8>().0.iter().enumerate() {
-        // Bit 8j goes to bit 56 + j; nothing else reaches those bits.
-        let bits = u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-        packed |= (bits as u32) << (8 * at);
+        packed |= (lowest_bits(*eight) as u32) << (8 * at);
     }
     packed
 }

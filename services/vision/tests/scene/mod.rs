@@ -1,6 +1,7 @@
 //! Small synthetic scenes: textured floor, blocks with cast shadows, look-alikes, occluders.
 #![allow(clippy::unwrap_used, dead_code, reason = "shared by test files that use different parts of it")]
 
+pub(crate) mod fine;
 pub(crate) mod signs;
 
 use std::sync::Arc;

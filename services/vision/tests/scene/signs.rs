@@ -1,12 +1,11 @@
 //! Lettered road signs before a sky and grass: octagons and boards.
 
+use super::fine;
 use vision::{Frame, Landmark, LearnOptions, PointPx, RectPx, ShapeClass, learn};
 
 const WIDTH: u32 = 240;
 const HEIGHT: u32 = 140;
 const WHITE: [f32; 3] = [190.0, 194.0, 190.0];
-/// Samples a pixel in each direction.
-const FINE: u32 = 4;
 
 /// An octagon or a board.
 #[derive(Clone, Copy)]
@@ -57,14 +56,7 @@ pub(crate) fn picture(signs: &[Sign]) -> Frame {
         let ground = if y < 80.0 { [150.0, 178.0, 220.0] } else { [112.0, 116.0, 98.0] };
         signs.iter().find_map(|sign| sign.color_at(x, y)).unwrap_or(ground)
     };
-    let pixel = |x: u32, y: u32| {
-        let at = |base: u32, part: u32| base as f32 + (part as f32 + 0.5) / FINE as f32;
-        let samples = (0..FINE * FINE).map(|k| sample(at(x, k % FINE), at(y, k / FINE)));
-        let sum = samples.fold([0.0; 3], |sum, color| std::array::from_fn(|c| sum[c] + color[c]));
-        sum.map(|total: f32| (total / (FINE * FINE) as f32).round() as u8)
-    };
-    let rgb = (0..HEIGHT).flat_map(|y| (0..WIDTH).flat_map(move |x| pixel(x, y))).collect();
-    Frame::from_rgb(WIDTH, HEIGHT, rgb).unwrap()
+    Frame::from_rgb(WIDTH, HEIGHT, fine::rgb(WIDTH, HEIGHT, sample)).unwrap()
 }
 
 /// What is learned of one sign of a shape.

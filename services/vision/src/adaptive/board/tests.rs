@@ -1,5 +1,8 @@
 //! Signs that overlap, stand behind posts and before bushes, in drawn frames.
 
+#[path = "../../../tests/scene/fine.rs"]
+mod fine;
+
 use crate::adaptive::memory::{List, Memory};
 use crate::adaptive::{Candidate, Finder, Light, Likeness, Search};
 use crate::frame::Frame;
@@ -14,8 +17,6 @@ const WHITE: [f32; 3] = [190.0, 194.0, 190.0];
 /// A mixture of both colours of the sign.
 const BUSH: [f32; 3] = [46.0, 106.0, 81.0];
 const POST: [f32; 3] = [110.0, 112.0, 114.0];
-/// Samples a pixel in each direction.
-const FINE: u32 = 4;
 
 /// A sign of that size around a centre, leaning by a slope.
 struct Sign {
@@ -51,14 +52,7 @@ fn drawn(signs: &[Sign], others: impl Fn(f32, f32) -> Option<[f32; 3]>) -> Frame
         let ground = if y < 70.0 { [150.0, 178.0, 220.0] } else { [92.0, 112.0, 58.0] };
         others(x, y).or_else(sign).unwrap_or(ground)
     };
-    let pixel = |x: u32, y: u32| {
-        let at = |base: u32, part: u32| base as f32 + (part as f32 + 0.5) / FINE as f32;
-        let samples = (0..FINE * FINE).map(|k| sample(at(x, k % FINE), at(y, k / FINE)));
-        let sum = samples.fold([0.0; 3], |sum, color| std::array::from_fn(|c| sum[c] + color[c]));
-        sum.map(|total: f32| (total / (FINE * FINE) as f32).round() as u8)
-    };
-    let rgb = (0..HEIGHT).flat_map(|y| (0..WIDTH).flat_map(move |x| pixel(x, y))).collect();
-    Frame::from_rgb(WIDTH, HEIGHT, rgb).unwrap()
+    Frame::from_rgb(WIDTH, HEIGHT, fine::rgb(WIDTH, HEIGHT, sample)).unwrap()
 }
 
 fn learned() -> Landmark {
